@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, names_apart, parse_expression
-from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints, Span, in_line
 from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, substitute, walk
 from mbsym.model.system import velocity_name
 from mbsym.source import render_option
@@ -46,14 +47,12 @@ def assignments(texts: Sequence[str], system: System, options: Options) -> Assig
         text = " ".join(text.splitlines())
         complaints = Complaints()
         _read(text, system, complaints, expressions, texts_by_name)
-        options.complaints += [
-            render_option(complaint, text, "--set", options.say) for complaint in complaints.sorted()
-        ]
+        options.add("--set", text, *complaints.sorted())
     return Assigned(expressions, texts_by_name)
 
 
 def _read(
-    text: str, system: System, complaints: Complaints, expressions: dict[str, Expression], texts_by_name: dict[str, str]
+    text: str, system: System, wrong: Complaints, expressions: dict[str, Expression], texts_by_name: dict[str, str]
 ) -> None:
     left, equals, right = text.partition("=")
     name, blanks = left.strip(), len(left) - len(left.lstrip())
@@ -61,22 +60,20 @@ def _read(
     if not equals or not name or len(text) > MAX_LENGTH:
         shown = Message("[[text]] gives no value", text=ascii_safe(text))
         reason = shown if len(text) <= MAX_LENGTH else "this assignment is too long"
-        complaints.error("bad-assignment", reason, None, "write name=value, for example l=3/2")
+        wrong.error("bad-assignment", reason, None, "write name=value, for example l=3/2")
         return
-    known = _check_target(name, span, system, complaints)
+    known = _check_target(name, span, system, wrong)
     if name in texts_by_name:
-        complaints.error("repeated-name", Message("[[name]] is set twice", name=f"'{name}'"), span)
+        wrong.error("repeated-name", Message("[[name]] is set twice", name=f"'{name}'"), span)
     texts_by_name[name] = text
-    place = _Places(len(left) + 1)
-    value = parse_expression(right, complaints, place)
-    parts = walk(value) if value is not None else names_apart(right, place, complaints.items)
+    place = partial(in_line, offset=len(left) + 1)
+    value = parse_expression(right, wrong, place)
+    parts = walk(value) if value is not None else names_apart(right, place, wrong.items)
     for node in parts:
         if isinstance(node, Name) and node.name not in (*system.parameter_names, *CONSTANTS) and node.span is not None:
             hint = did_you_mean(node.name, system.parameter_names) or "a value is made of numbers, pi and parameters"
-            complaints.error(
-                "unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint
-            )
-    if known and value is not None and not complaints.errors:
+            wrong.error("unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint)
+    if known and value is not None and not wrong.errors:
         expressions[name] = value
 
 
@@ -139,10 +136,8 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
         values[name] = value
         for _ in system.parameters:  # those in terms of others, which may be in terms of others
             values[name] = substitute(values[name], {k: v for k, v in known.items() if k != name})
-        if lacking := sorted(names(values[name])):
-            assigned.complain(
-                name, "missing-value", Message("no value for [[names]]", names=", ".join(lacking)), options
-            )
+        if unset := sorted(names(values[name])):
+            assigned.complain(name, "missing-value", Message("no value for [[names]]", names=", ".join(unset)), options)
     if not options.complaints:
         contradictions(file, Lack((), contradictions_of(system, values)), assigned, options)
     return with_values(system, values)
@@ -156,7 +151,7 @@ def in_scale(system: System, text: str, options: Options) -> System | None:
 
     text, complaints = " ".join(text.splitlines()), Complaints()
     scaling = read_scaling(text, system, complaints)
-    options.complaints += [render_option(complaint, text, "--scale", options.say) for complaint in complaints.sorted()]
+    options.add("--scale", text, *complaints.sorted())
     try:
         return None if scaling is None else described(system, scaling)
     except Failure as error:
@@ -168,18 +163,11 @@ def in_scale(system: System, text: str, options: Options) -> System | None:
 
 def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options) -> None:
     """Values that contradict a sign or a relation, or are none: said of ``--set`` where they come from there."""
-    for contradiction in lack.contradictions:
-        if contradiction.name in assigned.texts:
-            assigned.complain(contradiction.name, contradiction.code, contradiction.text, options, contradiction.hint)
+    for clash in lack.contradictions:
+        if clash.name in assigned.texts:
+            assigned.complain(clash.name, clash.code, clash.text, options, clash.hint)
         else:
-            options.complaints.append(
-                render_option(
-                    Complaint(contradiction.code, contradiction.text, None, contradiction.hint),
-                    "",
-                    str(file),
-                    options.say,
-                )
-            )
+            options.complain(str(file), clash.code, clash.text, clash.hint)
 
 
 def _unread(system: System, assigned: Assigned) -> set[str]:
@@ -190,21 +178,11 @@ def _unread(system: System, assigned: Assigned) -> set[str]:
     return unread
 
 
-class _Places:
-    """Offsets in the right side to places in the assignment."""
-
-    def __init__(self, offset: int) -> None:
-        self.offset = offset
-
-    def __call__(self, start: int, end: int) -> Span:
-        return Span(1, self.offset + start + 1, max(1, end - start))
-
-
 def _settable(system: System) -> list[str]:
     return [*system.parameter_names, *system.coordinates, *system.velocities, *system.variables]
 
 
-def _check_target(name: str, span: Span, system: System, complaints: Complaints) -> bool:
+def _check_target(name: str, span: Span, system: System, wrong: Complaints) -> bool:
     if name in _settable(system):
         return True
     for item in system.prescribed:
@@ -212,7 +190,7 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
             from mbsym.expressions.tree import text
 
             rate = Message("its rate is [[rate]]: set what that is made of", rate=text(item.rate))
-            complaints.error(
+            wrong.error(
                 "misplaced-name",
                 Message("'[[name]]' is a prescribed motion and has no value to set", name=name),
                 span,
@@ -220,20 +198,18 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
             )
             return False
     if name in (item.name for item in system.notation):
-        complaints.error(
+        wrong.error(
             "misplaced-name", Message("'[[name]]' is notation: it follows from the parameters", name=name), span
         )
         return False
     if name in system.input_names:
         message = Message("'mbsym simulate --input [[name]]=...' says what it is along a motion", name=name)
-        complaints.error(
+        wrong.error(
             "misplaced-name", Message("'[[name]]' is an input and has no value to set", name=name), span, message
         )
         return False
     hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))
-    complaints.error(
-        "unknown-name", Message("there is nothing called [[name]] to set", name=ascii_safe(name)), span, hint
-    )
+    wrong.error("unknown-name", Message("there is nothing called [[name]] to set", name=ascii_safe(name)), span, hint)
     return False
 
 

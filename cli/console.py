@@ -395,6 +395,11 @@ def reason_of(error: OSError) -> str:
     return said if error.filename is None else f"{printable(str(error.filename))}: {said}"
 
 
+def among(names: Callable[[], Iterable[str]]) -> Callable[[click.Context, click.Parameter, str], Any]:
+    """For ``shell_complete``: the names that begin as what was typed; they are looked up when a shell asks."""
+    return lambda context, parameter, typed: [name for name in names() if name.startswith(typed)]
+
+
 class OutPath(click.Path):
     """Where to write.  An empty text (a shell's unset variable) is no path: it would mean the current folder."""
 

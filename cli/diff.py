@@ -138,23 +138,19 @@ class Source:
     @cached_property
     def read(self) -> Mapping[str, Any]:
         try:
-            results = json.loads(self.path.read_text(encoding="utf-8"))
+            loaded = json.loads(self.path.read_text(encoding="utf-8"))
         except OSError as error:
             complain(self.path, Message("it cannot be read: [[why]]", why=reason_of(error)))
             raise Unreadable from error
         except (ValueError, RecursionError) as error:
             complain(self.path, Message("error[not-json]: this is no JSON: [[why]]", why=ascii_safe(str(error)[:200])))
             raise Unreadable from error
-        if (
-            not isinstance(results, dict)
-            or results.get("format") != 1
-            or not isinstance(results.get("coordinates"), list)
-        ):
+        if not isinstance(loaded, dict) or loaded.get("format") != 1 or not isinstance(loaded.get("coordinates"), list):
             complain(self.path, "error[not-results]: this is no results.json of format 1")
             hint = Message("mbsym run writes one; those of earlier versions have to be written again")
             print(f"  {speaking(self.path)(Message('hint: [[hint]]', hint=hint))}", file=sys.stderr)
             raise Unreadable
-        return results
+        return loaded
 
     def _derived(self, like: Mapping[str, Any] | None) -> Mapping[str, Any]:
         system = read_description(self.path)
@@ -258,14 +254,12 @@ def lines(change: Change) -> list[Message]:
         text = "[[place]]: in another order: [[before]] -> [[after]]"
         return [Message(text, place=where, before=before, after=after)]
     if change.kind == "formula":
-        difference = Message(
-            "[[count]], the first of them [[first]]", count=_terms(change.terms), first=_cut(change.first)
-        )
+        amount = Message("[[count]], the first of them [[first]]", count=_terms(change.terms), first=_cut(change.first))
         if change.difference:
-            difference = joined((change.difference,)) if len(change.difference) <= 4 * LONGEST else _terms(change.terms)
+            amount = joined((change.difference,)) if len(change.difference) <= 4 * LONGEST else _terms(change.terms)
         short = _short(change.before) and _short(change.after)
         both = joined((f"  {change.before}", f"{change.after}"), " -> ")
-        return [joined((where, joined(("B - A", difference), " = ")), ": "), *([both] if short else [])]
+        return [joined((where, joined(("B - A", amount), " = ")), ": "), *([both] if short else [])]
     if change.kind == "undecided":
         return [joined((where, joined((Message("undecided"), _undecided(change)), ", ")), ": ")]
     word = change.word and change.path[-1] != "code"  # which is none of English either
@@ -357,10 +351,7 @@ def system_data(name: str, difference: Diff) -> doc.SystemDiff:
         system=name,
         same=difference.same,
         versions=list(difference.versions),
-        renamed=[
-            doc.RenamedRow(kind=renaming.kind, before=renaming.before, after=renaming.after)
-            for renaming in difference.renamed
-        ],
+        renamed=[doc.RenamedRow(kind=pair.kind, before=pair.before, after=pair.after) for pair in difference.renamed],
         changes=[
             doc.ChangeRow(
                 path=list(change.path),

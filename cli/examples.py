@@ -8,14 +8,14 @@ from pathlib import Path
 import click
 
 from mbsym.expressions.message import Message
+from mbsym.source.examples import example_names
 from mbsym.studies.study import Exit
-from mbsym_cli.completion import among, examples
-from mbsym_cli.console import OutPath, complain, printable
+from mbsym_cli.console import OutPath, among, complain, printable
 from mbsym_cli.options import Options
 
 
 @click.command("examples")
-@click.argument("names", nargs=-1, metavar="[NAME]...", shell_complete=among(examples))
+@click.argument("names", nargs=-1, metavar="[NAME]...", shell_complete=among(example_names))
 @click.option("--all", "every", is_flag=True, help="Copy all of them.")
 @click.option("-o", "--out", type=OutPath(path_type=Path), default=".", help="Folder to copy to.  [default: this one]")
 def command(names: tuple[str, ...], every: bool, out: Path) -> None:
@@ -28,8 +28,6 @@ def command(names: tuple[str, ...], every: bool, out: Path) -> None:
       mbsym examples
       mbsym examples double-pendulum satellite --out systems
     """
-    from mbsym.source.examples import example_names
-
     known = example_names()
     if not names and not every:
         _list(known)

@@ -11,8 +11,7 @@ import click
 
 from mbsym.problems import NUMBERS, ranges
 from mbsym.studies.study import Exit
-from mbsym_cli.completion import among
-from mbsym_cli.console import asked_width, wrapped
+from mbsym_cli.console import among, asked_width, wrapped
 
 TOPICS = {
     "description": "the keys of a description",
@@ -106,9 +105,7 @@ def _as_known(word: str) -> str:
 
 def _near(word: str) -> list[str]:
     """Names that hold the word, or the one that resembles it."""
-    holding = [
-        candidate for candidate in known_words() if word.casefold() in candidate.casefold().replace("-", " ").split()
-    ]
+    holding = [entry for entry in known_words() if word.casefold() in entry.casefold().replace("-", " ").split()]
     return holding[:3] or get_close_matches(word, known_words(), 1)
 
 

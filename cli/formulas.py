@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe, parse_expression
-from mbsym.expressions.place import Complaints, Span
-from mbsym.source import render_option
+from mbsym.expressions.place import Complaints, Span, in_line
 from mbsym.studies.request import Formula, Quantity
 from mbsym_cli.options import MAX_LENGTH, Options
 
@@ -39,9 +39,7 @@ def read_formula(text: str, system: System, what: Kind, formulas: dict[str, Expr
     """Puts a sound formula into ``formulas``; whatever is wrong with it joins the complaints of ``asked``."""
     text, complaints = " ".join(text.splitlines()), Complaints()
     _read(text, system, what, complaints, formulas)
-    options.complaints += [
-        render_option(complaint, text, what.option, options.say) for complaint in complaints.sorted()
-    ]
+    options.add(what.option, text, *complaints.sorted())
 
 
 def _read(text: str, system: System, what: Kind, complaints: Complaints, formulas: dict[str, Expression]) -> None:
@@ -65,12 +63,8 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, formula
         complaints.error("unknown-name", Message(words, kind=worded(what.kind), name=ascii_safe(name)), span, near)
     elif name in formulas:
         complaints.error("repeated-name", Message("[[name]] is given twice", name=f"'{name}'"), span)
-    offset, allowed = len(left) + 1, LAW if what is LAWS else MOTION
-
-    def place(start: int, end: int) -> Span:
-        return Span(1, offset + start + 1, max(1, end - start))
-
-    law = read_law(right, system, complaints, place, allowed)
+    place = partial(in_line, offset=len(left) + 1)
+    law = read_law(right, system, complaints, place, LAW if what is LAWS else MOTION)
     if law is not None and not complaints.errors:
         formulas[name] = law
 
@@ -84,20 +78,18 @@ def read_quantity(option: str, text: str, kind: Formula, system: System | None, 
     if text in kind.words:
         return Quantity(text)
     known = () if system is None else kind.names(system, text)
-    formula, complaints = " ".join(text.removeprefix(kind.prefix).split()), Complaints()
+    formula, wrong = " ".join(text.removeprefix(kind.prefix).split()), Complaints()
     anything = Message("[[words]], or a formula", words=", ".join(kind.words))
     if not formula or len(formula) > MAX_LENGTH:
         options.complain(option, "bad-formula", Message("nothing is said after [[option]]", option=option), anything)
         return Quantity(text)
-    value = parse_expression(formula, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    value = parse_expression(formula, wrong)
     for node in walk(value) if value is not None and system is not None else ():
         if isinstance(node, Name) and node.name not in {*known, *CONSTANTS} and node.span is not None:
             hint = did_you_mean(node.name, [*known, *kind.words]) or anything
-            complaints.error(
-                "unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint
-            )
+            wrong.error("unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint)
     if value is not None and (why := out_of_range(value)):
         span = Span(1, 1, max(1, len(formula)))
-        complaints.error("no-number", Message("nothing can be computed with this number: [[why]]", why=why), span)
-    options.complaints += [render_option(complaint, formula, option, options.say) for complaint in complaints.sorted()]
-    return Quantity(text, None if complaints.errors else value)
+        wrong.error("no-number", Message("nothing can be computed with this number: [[why]]", why=why), span)
+    options.add(option, formula, *wrong.sorted())
+    return Quantity(text, None if wrong.errors else value)

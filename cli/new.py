@@ -16,9 +16,9 @@ import click
 from mbsym.expressions.message import Message
 from mbsym.model.system import LANGUAGES
 from mbsym.report.language import Language
+from mbsym.source.examples import example_names
 from mbsym.studies.study import Exit
-from mbsym_cli.completion import among, examples
-from mbsym_cli.console import complain, printable
+from mbsym_cli.console import among, complain, printable
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 @click.option(
     "--like",
     metavar="EXAMPLE",
-    shell_complete=among(examples),
+    shell_complete=among(example_names),
     help="Begin with one of the shipped systems instead of questions.",
 )
 @click.option("--language", metavar="NAME", help="Of its reports, and of the questions: en, ru or es.")
@@ -45,7 +45,7 @@ def command(name: str, like: str | None, language: str | None) -> None:
       mbsym new crane
       mbsym new my-pendulum --like pendulum
     """
-    from mbsym.source.examples import example_like, example_names
+    from mbsym.source.examples import example_like
     from mbsym_cli.files import write_whole
 
     options = Options()

@@ -48,17 +48,16 @@ class Options:
         self.complaints: list[str] = []
         self.say: Callable[[str], str] = str  # the language of the description, once it is read
 
-    def add(self, option: str, complaint: Complaint, text: str = "") -> None:
-        """A complaint about an option, with the place in its ``text`` where it has one."""
-        self.complaints.append(render_option(complaint, text, option, self.say))
+    def add(self, option: str, text: str, *complaints: Complaint) -> None:
+        """Complaints about an option, with the place in its ``text`` where they have one."""
+        self.complaints += [render_option(complaint, text, option, self.say) for complaint in complaints]
 
     def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
-        self.add(option, Complaint(code, message, None, hint))
+        self.add(option, "", Complaint(code, message, None, hint))
 
     def complain_whole(self, option: str, text: str, code: str, message: str, hint: str | None = None) -> None:
         """Of a text as a whole, which is shown."""
-        span = Span(1, 1, max(1, len(text)))
-        self.complaints.append(render_option(Complaint(code, message, span, hint), text, option, self.say))
+        self.add(option, text, Complaint(code, message, Span(1, 1, max(1, len(text))), hint))
 
     def sort(self, options: Sequence[str]) -> None:
         """Complaints in the order of these options, what is not about one of them behind."""
@@ -155,26 +154,26 @@ class Options:
         from mbsym.numerics.scenario import exact
 
         text = " ".join(text.splitlines())
-        complaints = Complaints()
+        wrong = Complaints()
         value, whole = None, Span(1, 1, max(1, len(text)))
         if len(text) > MAX_LENGTH:
-            complaints.error("bad-number", "this number is too long")
+            wrong.error("bad-number", "this number is too long")
         else:
-            value = parse_expression(text, complaints, place_in, named=False)
+            value = parse_expression(text, wrong, named=False)
         if value is not None:
             for node in walk(value):
                 if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
-                    complaints.error(
+                    wrong.error(
                         "unknown-name",
                         Message("a number is wanted here, not [[name]]", name=ascii_safe(node.name)),
                         node.span,
                     )
         evaluated = None
-        if value is not None and not complaints.errors:
+        if value is not None and not wrong.errors:
             try:
                 evaluated = float(exact(value, {}))
             except Failure as reason:
-                complaints.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
+                wrong.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
             else:
                 within = None
                 if most is not None:
@@ -182,13 +181,11 @@ class Options:
                 if most is not None and least:
                     within = Message("choose between [[least]] and [[most]]", least=f"{least:g}", most=f"{most:g}")
                 if not evaluated > 0:
-                    complaints.error("bad-number", "it must be positive", whole, within if least else None)
+                    wrong.error("bad-number", "it must be positive", whole, within if least else None)
                 elif evaluated < least or (most is not None and evaluated > most):
-                    complaints.error(
-                        "bad-number", within or Message("it is at least [[least]]", least=f"{least:g}"), whole
-                    )
-        self.complaints += [render_option(complaint, text, option, self.say) for complaint in complaints.sorted()]
-        return None if complaints.errors else evaluated
+                    wrong.error("bad-number", within or Message("it is at least [[least]]", least=f"{least:g}"), whole)
+        self.add(option, text, *wrong.sorted())
+        return None if wrong.errors else evaluated
 
     def whole(self, option: str, text: str | None, least: int, most: int, why: str = "") -> int | None:
         """A whole number between bounds; ``why`` says what the lower one is for."""
@@ -269,7 +266,3 @@ def identity_of(path: Path) -> str:
         return os.path.realpath(path)
     except (OSError, ValueError):  # the current folder is gone; a name with a NUL
         return str(path)
-
-
-def place_in(start: int, end: int) -> Span:
-    return Span(1, start + 1, max(1, end - start))

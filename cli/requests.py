@@ -125,12 +125,7 @@ def _motion(
 
 
 def _read(
-    field: Field,
-    typed: Any,
-    system: System | None,
-    texts: Mapping[str, Any],
-    options: Options,
-    motion: Scenario | None,
+    field: Field, typed: Any, system: System | None, texts: Mapping[str, Any], options: Options, motion: Scenario | None
 ) -> Any:
     match field.kind:
         case Number() as kind:
@@ -209,8 +204,7 @@ def _names(option: str, kind: Names, typed: Any, system: System | None, options:
 def _parsed(option: str, kind: Parsed, text: str, system: System, options: Options) -> Any:
     text, complaints = " ".join(text.splitlines()), Complaints()
     value = kind.read(text, system, complaints)
-    for complaint in complaints.sorted():
-        options.add(option, complaint, text)
+    options.add(option, text, *complaints.sorted())
     return value
 
 

@@ -140,7 +140,7 @@ def command(
     """
     from mbsym.analysis.forms import FORMS
     from mbsym.model.system import LANGUAGES
-    from mbsym.report.detail import DETAILS
+    from mbsym.report.compact import DETAILS
     from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
 
     options = Options()

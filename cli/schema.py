@@ -10,7 +10,7 @@ import click
 
 from mbsym.source import json_schema
 from mbsym.studies.study import Exit
-from mbsym_cli.completion import among
+from mbsym_cli.console import among
 from mbsym_cli.options import Options
 
 #: What is read; the others are written.

@@ -199,11 +199,8 @@ class _Run:
         if reason.name:
             self.options.complain_whole(reason.option, self._text(reason), reason.code, reason.message, reason.hint)
         else:
-            self.options.add(
-                reason.option or str(self.file),
-                Complaint(reason.code, reason.message, reason.span, reason.hint),
-                reason.text,
-            )
+            complaint = Complaint(reason.code, reason.message, reason.span, reason.hint)
+            self.options.add(reason.option or str(self.file), reason.text, complaint)
 
     def _text(self, reason: Unfit) -> str:
         """What was typed for that name."""

@@ -26,12 +26,8 @@ class Misused(click.UsageError):
             formatter = context.make_formatter()
             pieces = " ".join(command.collect_usage_pieces(context))
             formatter.write_usage(context.command_path, pieces, self.say("Usage:") + " ")
-            help_words = f"{context.command_path} --help"
-            lines = [
-                formatter.getvalue() + self.say(Message("Try '[[command]]' for help.", command=help_words)),
-                "",
-                *lines,
-            ]
+            hint = Message("Try '[[command]]' for help.", command=f"{context.command_path} --help")
+            lines = [formatter.getvalue() + self.say(hint), "", *lines]
         click.echo("\n".join(lines), file, err=True)
 
 

@@ -12,7 +12,6 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.model.system import rational
-from mbsym.source import render_option
 from mbsym.studies.request import Ranges, Varied
 from mbsym_cli.options import MAX_LENGTH, Options
 
@@ -107,7 +106,7 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
     from mbsym.numerics.scenario import exact
 
     complaints, whole = Complaints(), Span(1, 1, max(1, len(text)))
-    value = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    value = parse_expression(text, complaints)
     known = dict(motion.parameters) if motion is not None else {}
     evaluated = None
     if value is not None and not complaints.errors:
@@ -121,7 +120,7 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
                 evaluated = float(exact(value, known))
             except Failure as reason:
                 complaints.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
-    options.complaints += [render_option(complaint, text, option, options.say) for complaint in complaints.sorted()]
+    options.add(option, text, *complaints.sorted())
     return evaluated
 
 
@@ -209,11 +208,11 @@ def read_rational(text: str, option: str, options: Options) -> Fraction | None:
     if len(text) > MAX_LENGTH:
         complaints.error("bad-number", "this number is too long")
     else:
-        parsed = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+        parsed = parse_expression(text, complaints)
         if parsed is not None and not complaints.errors:
             value = rational(parsed)
             if value is None:
                 hint = "write it as a fraction or a decimal, 2/5 or 0.4: what is found is exact"
                 complaints.error("bad-number", "a rational number is wanted", Span(1, 1, max(1, len(text))), hint)
-    options.complaints += [render_option(complaint, text, option, options.say) for complaint in complaints.sorted()]
+    options.add(option, text, *complaints.sorted())
     return value

@@ -67,22 +67,16 @@ def _suite(suites: Element, row: Row, summary: Summary) -> dict[str, int]:
             inner = SubElement(element, case.kind, {"message": safe(case.message)})
             if case.kind != "skipped":
                 inner.set("type", "mbsym")
-                inner.text = _lines(case.text or case.message)
+                inner.text = "\n".join(map(safe, (case.text or case.message).split("\n")))
     return numbers
-
-
-def _lines(text: str) -> str:
-    return "\n".join(safe(line) for line in text.split("\n"))
 
 
 def cases(row: Row, strict: bool = False) -> Iterator[Case]:
     """The cases of one description.  ``strict``: a claim that is not proved to hold has failed."""
     yield _reading(row)
     if row.outcome in _ENDED:
-        message = row.message or "; ".join(row.notes)
-        yield Case(
-            "derivation", "error", f"{row.outcome}: {message}" if message else str(row.outcome), "\n".join(row.notes)
-        )
+        text = row.message or "; ".join(row.notes)
+        yield Case("derivation", "error", f"{row.outcome}: {text}" if text else str(row.outcome), "\n".join(row.notes))
     elif row.outcome in _UNTRIED:
         yield Case("derivation", "skipped", str(row.outcome))
     for problem in row.problems:
@@ -94,8 +88,8 @@ def cases(row: Row, strict: bool = False) -> Iterator[Case]:
         yield _claim(number, claim, strict)
     for check in row.checks:
         kind = "failure" if check.failed else "skipped" if check.outcome == "undecided" else ""
-        message = f"{check.first} against {check.second}: {check.outcome}"
-        yield Case(f"self-check: {check.name}", kind, message, f"{message}\n{check.detail}")
+        text = f"{check.first} against {check.second}: {check.outcome}"
+        yield Case(f"self-check: {check.name}", kind, text, f"{text}\n{check.detail}")
 
 
 def _reading(row: Row) -> Case:

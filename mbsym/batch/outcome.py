@@ -82,8 +82,7 @@ class ProblemRow(Part, frozen=True):
     title: Annotated[str, "what it is about"]
     status: Annotated[str, words("derived", "none"), "whether there is a result"]
     code: Annotated[
-        str | None,
-        "kind of the reason why there is no result: no-closed-form, internal-error, withdrawn, ...",
+        str | None, "kind of the reason why there is no result: no-closed-form, internal-error, withdrawn, ..."
     ] = None
     reason: Annotated[str | None, "the same in a sentence"] = None
     hint: Annotated[str | None, "what to try next, in a sentence"] = None
@@ -235,17 +234,8 @@ def findings(summary: Summary) -> tuple[Finding, ...]:
 
 
 def _of(row: Row) -> Iterator[Finding]:
-    for complaint in row.complaints:
-        yield Finding(
-            row.file,
-            complaint.code,
-            complaint.message,
-            complaint.severity,
-            complaint.line,
-            complaint.column,
-            complaint.length or 1,
-            complaint.hint,
-        )
+    for x in row.complaints:
+        yield Finding(row.file, x.code, x.message, x.severity, x.line, x.column, x.length or 1, x.hint)
     for check in row.checks:
         if check.failed:
             yield Finding(row.file, "self-check-failed", f"self-check failed: {check.name}: {check.detail}")

@@ -11,7 +11,6 @@ from typing import Annotated
 from msgspec import Meta
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Summary
-from mbsym.batch.outcome import Row as Finished
 from mbsym.expressions.safe import encodable
 from mbsym.report.documents.base import SHA256, Format, Part, words, written
 from mbsym.report.schemas import Schema, schema_of
@@ -107,7 +106,7 @@ def summary_file(summary: Summary) -> SummaryFile:
         mbsym=summary.version,
         options=Options(problems, list(summary.formats), summary.terms, summary.angles, summary.detail),
         totals=Totals(len(summary.rows), summary.totals),
-        systems=[_row(row) for row in summary.rows],
+        systems=[Row(**{name: getattr(row, name) for name in Row.__struct_fields__}) for row in summary.rows],
         run=Run.from_result(
             summary,
             seconds=round(summary.seconds, 3),
@@ -119,7 +118,3 @@ def summary_file(summary: Summary) -> SummaryFile:
 def summary_text(summary: Summary) -> str:
     """The file's text."""
     return encodable(written(summary_file(summary), indent=2))
-
-
-def _row(row: Finished) -> Row:
-    return Row(**{name: getattr(row, name) for name in Row.__struct_fields__})

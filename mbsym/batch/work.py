@@ -132,11 +132,9 @@ def _problem_row(analysis: Analysis, number: int) -> ProblemRow:
             defect=why.severity is Severity.DEFECT,
         )
     if isinstance(stage.value, Stability):
-        at_values = stage.value.numerical
+        there = stage.value.numerical
         return structs.replace(
-            row,
-            verdict=stage.value.verdict.word.value,
-            verdict_at_values=None if at_values is None else at_values.word.value,
+            row, verdict=stage.value.verdict.word.value, verdict_at_values=None if there is None else there.word.value
         )
     return row
 

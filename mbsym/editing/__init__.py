@@ -2,5 +2,3 @@
 
 from mbsym.editing.completion import Suggestion, suggestions
 from mbsym.editing.hover import explanation
-
-__all__ = ["Suggestion", "explanation", "suggestions"]

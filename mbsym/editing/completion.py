@@ -54,11 +54,7 @@ def suggestions(text: str, line: int, column: int, system: System | None = None)
     if place.is_value:
         return list(_values(place, text, system))
     known = keys_in(place.path)
-    keys = [
-        Suggestion(key, "key", definition.meaning, f"{key}: ")
-        for key, definition in known.items()
-        if key not in place.beside
-    ]
+    keys = [Suggestion(key, "key", rule.meaning, f"{key}: ") for key, rule in known.items() if key not in place.beside]
     if keys or not any(isinstance(value_type, Named) and value_type.of for value_type in types_at(place.path)):
         return keys
     return [Suggestion(name, "name", "a coordinate", f"{name}: ") for name in _coordinates(system)]
@@ -93,23 +89,15 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
         names = _DECLARED.findall(section[1]) if section else []
         yield from (Suggestion(name, "name", "a parameter", name) for name in names)
     else:
-        yield from (
-            Suggestion(parameter.name, "name", parameter.meaning or "a parameter", parameter.name)
-            for parameter in system.parameters
-        )
-        yield from (Suggestion(name, "name", "a coordinate", name) for name in system.coordinates)
-        if velocities:
-            rates = map(velocity_name, system.coordinates)
-            yield from (Suggestion(name, "name", "a velocity", name) for name in rates)
-        yield from (
-            Suggestion(prescribed.name, "name", prescribed.meaning or "prescribed", prescribed.name)
-            for prescribed in system.prescribed
-        )
-        yield from (
-            Suggestion(system_input.name, "name", system_input.meaning or "an input", system_input.name)
-            for system_input in system.inputs
-        )
-        yield from (Suggestion(notation.name, "name", "a notation", notation.name) for notation in system.notation)
+        named = [
+            *((x.name, x.meaning or "a parameter") for x in system.parameters),
+            *((name, "a coordinate") for name in system.coordinates),
+            *((velocity_name(name), "a velocity") for name in system.coordinates if velocities),
+            *((x.name, x.meaning or "prescribed") for x in system.prescribed),
+            *((x.name, x.meaning or "an input") for x in system.inputs),
+            *((x.name, "a notation") for x in system.notation),
+        ]
+        yield from (Suggestion(name, "name", meaning, name) for name, meaning in named)
         yield from (Suggestion(table.name, "function", "a table", f"{table.name}(") for table in system.tables)
     yield from (Suggestion(name, "function", "", f"{name}(") for name in FUNCTIONS)
     yield Suggestion("pi", "word", "3.14159...", "pi")

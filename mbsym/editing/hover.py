@@ -68,11 +68,9 @@ def _name(word: str, analysis: Analysis) -> str | None:
     for motion in system.prescribed:
         if motion.name == word:
             return f"**{plain(word)}**{unit_text}: prescribed, {plain(word)}' = {code(written(motion.rate))}"
-    for system_input in system.inputs:
-        if system_input.name == word:
-            return f"**{plain(word)}**{unit_text}: an input" + (
-                f", {plain(system_input.meaning)}" if system_input.meaning else ""
-            )
+    for signal in system.inputs:
+        if signal.name == word:
+            return f"**{plain(word)}**{unit_text}: an input" + (f", {plain(signal.meaning)}" if signal.meaning else "")
     for symbol in system.notation:
         if symbol.name == word:
             return f"**{plain(word)}** = {code(written(symbol.value))}"

@@ -26,7 +26,7 @@ from math import ceil
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.constants import meaningless
 from mbsym.expressions.message import Message, joined
-from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints, Span, in_line
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
 from mbsym.expressions.safe import quoted
 from mbsym.expressions.table import Table
@@ -181,7 +181,7 @@ class _Refused(Exception):
 def parse_expression(
     text: str,
     complaints: Complaints,
-    span_of: SpanOf,
+    span_of: SpanOf = in_line,
     named: bool = True,
     bounds: Bounds = WRITTEN,
     tables: Mapping[str, Table] = NO_TABLES,

@@ -21,6 +21,11 @@ class Span:
     length: int = 1
 
 
+def in_line(start: int, end: int, offset: int = 0) -> Span:
+    """A piece of a text of one line, by what is before it and before its end; ``offset`` characters precede both."""
+    return Span(1, offset + start + 1, max(1, end - start))
+
+
 @dataclass(frozen=True, slots=True)
 class Complaint:
     """What is wrong, where, and what to try next.

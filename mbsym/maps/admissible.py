@@ -66,17 +66,15 @@ def admissibility(analysis: Analysis, section: Section) -> Admissibility:
     _assumptions(analysis, section.images, demands, left_out)
     for body in analysis.system.bodies:
         _triangles(analysis, body, section.images, demands, left_out)
-    distinct: list[Demand] = []
+    unique: list[Demand] = []
     for demand in demands:
-        same = (
-            x.condition.polynomial == demand.condition.polynomial and x.relation == demand.relation for x in distinct
-        )
+        same = (x.condition.polynomial == demand.condition.polynomial and x.relation == demand.relation for x in unique)
         if not any(same):
-            distinct.append(demand)
-    plain = [requirement for requirement in distinct if not requirement.condition.polynomial.is_constant()]
+            unique.append(demand)
+    plain = [requirement for requirement in unique if not requirement.condition.polynomial.is_constant()]
     broken = [
         requirement
-        for requirement in distinct
+        for requirement in unique
         if requirement.condition.polynomial.is_constant()
         and not requirement.kept(_number(requirement.condition.polynomial))
     ]

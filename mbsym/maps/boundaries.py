@@ -298,9 +298,8 @@ def deciding_zeros(coefficients: Sequence[Polynomial], constant: Constant | None
     if not nonzero:
         return
     yield nonzero[0]
-    lowest = (
-        nonzero[0] if constant is None else constant.norm(nonzero[0])
-    )  # over its field factors may be multiple, too
+    # Over the field of a constant factors may be multiple, too.
+    lowest = nonzero[0] if constant is None else constant.norm(nonzero[0])
     most = max((int(exponent) for _, exponent in irreducible_factors(lowest)[1]), default=1)
     if most > 1:
         yield from nonzero[1 : 1 + most]

@@ -55,11 +55,7 @@ _TRIED = tuple(Fraction(k, 97) for k in (48, 21, 77, 5, 92))
 
 
 def branches(
-    system: System,
-    axis: Axis,
-    values: Mapping[str, Fraction],
-    limits: Limits | None = None,
-    watch: Watch = unwatched,
+    system: System, axis: Axis, values: Mapping[str, Fraction], limits: Limits | None = None, watch: Watch = unwatched
 ) -> Branches:
     """All branches of relative equilibria for the parameter ``axis.name`` in [axis.low, axis.high].
 
@@ -308,11 +304,8 @@ def _followed(
     start = tuple(values[name] for name in curve.names)
     ps, qs, at_low, at_high = followed(curve, start, sample, low, high)
     piece = Piece(k, number, False, None, None, tuple(ps), tuple(qs))
-    arrived = (
-        _features(curve, ps[0], qs[0]) if at_low else None,
-        _features(curve, ps[-1], qs[-1]) if at_high else None,
-    )
-    return piece, arrived
+    ends = (_features(curve, ps[0], qs[0]) if at_low else None, _features(curve, ps[-1], qs[-1]) if at_high else None)
+    return piece, ends
 
 
 def _features(curve: Curve, p: float, q: Sequence[float]) -> tuple[float, ...]:

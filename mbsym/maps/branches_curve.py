@@ -179,11 +179,9 @@ def searches_over(
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
-    kept_parameters = tuple(
-        replace(parameter, value=None) for parameter in system.parameters if parameter.name in parameters
-    )
+    free = tuple(replace(parameter, value=None) for parameter in system.parameters if parameter.name in parameters)
     numbers = {key: value for key, value in values.items() if key not in parameters}
-    first = rest(replace(at_numbers(system, numbers), parameters=kept_parameters))
+    first = rest(replace(at_numbers(system, numbers), parameters=free))
     if first.rows and not limits.reduction:
         limits = replace(limits, reduction=REDUCTION)
     for chart in charts(first):

@@ -86,10 +86,7 @@ class ExactVerdicts:
         if all(point_verdict.roots is not None for point_verdict in verdicts):
             right = sum(point_verdict.roots.right for point_verdict in verdicts if point_verdict.roots is not None)
             real = sum(_real(point_verdict) for point_verdict in verdicts)
-        kinds = {
-            _border(part, part_verdict, usual, at)
-            for part, part_verdict, usual in zip(parts, verdicts, self._usual, strict=True)
-        }
+        kinds = {_border(part, word, usual, at) for part, word, usual in zip(parts, verdicts, self._usual, strict=True)}
         border = next((kind for kind in _ORDER if kind in kinds), None)
         return Judged(verdict, right, real, sum(x[2] for x in signature), sum(x[1] for x in signature), border)
 
@@ -488,9 +485,7 @@ def _differences(there: Judged, judged: Judged) -> list[Mistake]:
     wrong = []
     if there.verdict.word is not judged.verdict.word:
         wrong.append(Mistake.VERDICT)
-    counts = [
-        (judgement.right, judgement.real_right, judgement.degree, judgement.null) for judgement in (there, judged)
-    ]
+    counts = [(side.right, side.real_right, side.degree, side.null) for side in (there, judged)]
     if counts[0] != counts[1]:
         wrong.append(Mistake.COUNT)
     return wrong

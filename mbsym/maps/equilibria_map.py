@@ -133,11 +133,7 @@ def _cell(
     throughout = (
         not doubtful
         and undamped
-        and all(
-            equilibrium.verdict.theorem in BY_INERTIA
-            for equilibrium in sampled.equilibria
-            if equilibrium.verdict.stable
-        )
+        and all(state.verdict.theorem in BY_INERTIA for state in sampled.equilibria if state.verdict.stable)
     )
     other = inside(made, drawn, region, source)
     if other is None:
@@ -231,17 +227,15 @@ class Surface(Varied):
 
     def leaving(self) -> list[Projected]:
         """Where a root or a denominator vanishes, or lengths go to infinity."""
-        projecteds = [self.over([x], inside=False) for x in self.undefined()]
+        parts = [self.over([x], inside=False) for x in self.undefined()]
         if self.mass is None:
-            projecteds.append(Projected((), False, (MASS_OPEN,)))
+            parts.append(Projected((), False, (MASS_OPEN,)))
         elif not self.mass.is_constant():
             # all along a surface: other equilibria meet it where they are singular
-            projecteds.append(replace(self.over([self.mass]), everywhere=False))
+            parts.append(replace(self.over([self.mass]), everywhere=False))
         for system in self.at_infinity():
-            projecteds.append(
-                Projected((), False, (INFINITY_OPEN,)) if system is None else self._projected(*system, ())
-            )
-        return projecteds
+            parts.append(Projected((), False, (INFINITY_OPEN,)) if system is None else self._projected(*system, ()))
+        return parts
 
 
 class _Eliminating(_Solver):
@@ -292,9 +286,7 @@ def surfaces(
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
-    candidates = [
-        Surface(search) for searches in searches_over(system, parameters, values, limits) for search in searches
-    ]
-    if angles := [name for surface in candidates for name in surface.in_angles]:
+    tried = [Surface(search) for searches in searches_over(system, parameters, values, limits) for search in searches]
+    if angles := [name for surface in tried for name in surface.in_angles]:
         raise NoClosedForm("[[name]] stands in a root or a function", name=angles[0])
-    return tuple(surface for surface in candidates if not surface.empty)
+    return tuple(surface for surface in tried if not surface.empty)

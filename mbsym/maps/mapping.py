@@ -274,10 +274,8 @@ def withdrawn(cells: list[Cell], part: int, checked: Check) -> list[Cell]:
     lone = all(mistake.breach is None for mistake in checked.findings) and all(
         any(k is not None for k in x) for x in locations
     )
-    doubted = {location[part] for location in locations}
-    return [
-        cell.withdrawn if cell.said is not None and (cell.number in doubted or not lone) else cell for cell in cells
-    ]
+    wrong = {location[part] for location in locations}
+    return [cell.withdrawn if cell.said is not None and (cell.number in wrong or not lone) else cell for cell in cells]
 
 
 def without_constant(there: Section, found: Boundaries) -> Boundaries:

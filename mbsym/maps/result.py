@@ -75,6 +75,10 @@ class Lack(StrEnum):
 UNKNOWN = frozenset({Lack.TOO_LARGE, Lack.WITHDRAWN, Lack.NOT_REACHED, Lack.UNCOUNTED})
 
 
+#: Where the ground has its parts of each shape.
+_LISTED = {shape: f"{shape.name.lower()}s" for shape in Shape} | {Shape.BOX: "tiles"}
+
+
 @dataclass(frozen=True)
 class Counted:
     """The relative ``equilibria`` at a sample.
@@ -252,20 +256,7 @@ class Map:
 
     def place(self, cell: Cell) -> Any:
         """What of the ground a cell stands on."""
-        ground: Any = self.ground
-        match cell.shape:
-            case Shape.REGION:
-                return ground.regions[cell.number]
-            case Shape.ARC:
-                return ground.arcs[cell.number]
-            case Shape.CORNER:
-                return ground.corners[cell.number]
-            case Shape.INTERVAL:
-                return ground.intervals[cell.number]
-            case Shape.ZERO:
-                return ground.zeros[cell.number]
-            case Shape.BOX:
-                return ground.tiles[cell.number]
+        return getattr(self.ground, _LISTED[cell.shape])[cell.number]
 
     def at(self, *values: Fraction) -> Cell | None:
         """The cell of a rational point, exactly; None outside.  Of boxes that meet there, one of which more is said."""

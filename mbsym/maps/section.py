@@ -352,11 +352,7 @@ class Unfit(Failure):
     code = "section"
 
     def __init__(self, complaints: Sequence[Complaint]) -> None:
-        super().__init__(
-            "; ".join(
-                f"{complaint.name}: {complaint.fault.value} {complaint.about}".rstrip() for complaint in complaints
-            )
-        )
+        super().__init__("; ".join(f"{x.name}: {x.fault.value} {x.about}".rstrip() for x in complaints))
         self.complaints = tuple(complaints)
 
     @property
@@ -445,24 +441,18 @@ def _slope(top: Polynomial, below: Polynomial, k: int, point: Sequence[Any]) -> 
 
 
 def _remaining(
-    system: System, chosen: Sequence[str], numbers: Mapping[str, Fraction], motion: Equilibrium
+    system: System, chosen: Sequence[str], own: Mapping[str, Fraction], motion: Equilibrium
 ) -> dict[str, Fraction]:
     """The description's own numbers, but for parameters that stand in symbols that are given."""
     meaning = {item.name: names(item.value) for item in system.notation}
     meaning |= {item.name: names(item.value) for item in system.relations}
     spoken: set[str] = set()
-    pending = [x for name in (*chosen, *numbers) if name in meaning for x in meaning[name]]
+    pending = [x for name in (*chosen, *own) if name in meaning for x in meaning[name]]
     while pending:
         name = pending.pop()
         if name not in spoken:
             spoken.add(name)
             pending += meaning.get(name, ())
-    taken = {
-        *chosen,
-        *numbers,
-        *spoken,
-        *(item.name for item in system.relations),
-        *(name for name, _ in motion.solved),
-    }
+    taken = {*chosen, *own, *spoken, *(item.name for item in system.relations), *(name for name, _ in motion.solved)}
     values = ((item.name, rational(item.value)) for item in system.parameters if item.value is not None)
     return {name: value for name, value in values if value is not None and name not in taken}

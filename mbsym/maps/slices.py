@@ -221,19 +221,16 @@ class _Slicing:
         own = bounded(self.analysis, cut, admissibility)
         here = [p if p != 0 else cut.context.constant(1) for p in flat]
         further = [
-            (p, conditions)
-            for p, conditions in zip(own.factors, own.conditions, strict=True)
+            (p, why)
+            for p, why in zip(own.factors, own.conditions, strict=True)
             if not any(q.gcd(p) == p / p.leading_coefficient() for q in here)
         ]
         lying = [
-            condition
-            for p, conditions in zip(flat, self.boundaries.conditions, strict=True)
-            if p == 0
-            for condition in conditions
+            condition for p, why in zip(flat, self.boundaries.conditions, strict=True) if p == 0 for condition in why
         ]
         return Boundaries(
             (*here, *(p for p, _ in further)),
-            (*self.boundaries.conditions, *(conditions for _, conditions in further)),
+            (*self.boundaries.conditions, *(why for _, why in further)),
             (*self.boundaries.vanishing, *lying),
         )
 

@@ -258,9 +258,7 @@ class _Along:
         self.curve, self.axis = curve, axis
         self.top, self.bottom = (_plane(x, curve) for x in (whole.coefficient.top, whole.coefficient.bottom))
         watched = [self.top, self.bottom]
-        watched += [
-            _plane(x, curve) for element in (whole.slope, whole.constant) for x in (element.top, element.bottom)
-        ]
+        watched += [_plane(x, curve) for part in (whole.slope, whole.constant) for x in (part.top, part.bottom)]
         self.critical = list(self._abscissas(watched))
 
     def _abscissas(self, watched: Sequence[Any]) -> Iterator[Any]:
@@ -302,21 +300,15 @@ def _stretches(
     """Stretches of one sign of a; None where a point of the arc could not be told."""
     stretches: list[Stretch] = []
     for piece in arc.pieces:
-        kept_stretches = _of_piece(borders, formula, made, piece, curve)
-        if kept_stretches is None:
+        new = _of_piece(borders, formula, made, piece, curve)
+        if new is None:
             return None
         if piece.backwards:
-            kept_stretches = [
-                Stretch(stretch.end, stretch.start, stretch.onset) for stretch in reversed(kept_stretches)
-            ]
-        if (
-            stretches
-            and stretches[-1].onset is kept_stretches[0].onset
-            and _same_between(borders, made, piece, kept_stretches[0].onset)
-        ):
-            stretches[-1:] = [Stretch(stretches[-1].start, kept_stretches[0].end, kept_stretches[0].onset)]
-            kept_stretches = kept_stretches[1:]
-        stretches += kept_stretches
+            new = [Stretch(stretch.end, stretch.start, stretch.onset) for stretch in reversed(new)]
+        if stretches and stretches[-1].onset is new[0].onset and _same_between(borders, made, piece, new[0].onset):
+            stretches[-1:] = [Stretch(stretches[-1].start, new[0].end, new[0].onset)]
+            new = new[1:]
+        stretches += new
     if arc.corners == (None, None) and not _same_between(borders, made, arc.pieces[0], stretches[0].onset):
         return None  # closed: where it starts is a point of it
     return tuple(stretches)

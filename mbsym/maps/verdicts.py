@@ -92,10 +92,7 @@ def jumps(
 ) -> tuple[list[int], list[int]]:
     """The arcs and the corners (zeros of a line) whose counts do not fit those of the regions beside them."""
     if isinstance(decomposition, Line):
-        beside = [
-            [interval.id for interval in decomposition.intervals if zero.id in interval.ends]
-            for zero in decomposition.zeros
-        ]
+        beside = [[part.id for part in decomposition.intervals if zero.id in part.ends] for zero in decomposition.zeros]
         return [], list(_misfits(corners, beside, regions))
     by_arc = {arc.id: [k for k in arc.regions if k is not None] for arc in decomposition.arcs}
     # an arrangement that breaks a law may lack arcs: that is found elsewhere

@@ -10,5 +10,3 @@
 from mbsym.picture.build import picture, picture_at
 from mbsym.picture.encode import as_json
 from mbsym.picture.values import Picture
-
-__all__ = ["Picture", "as_json", "picture", "picture_at"]

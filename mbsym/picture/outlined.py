@@ -32,14 +32,12 @@ def outlined(
 
     if kind == "box":
         corners = [there(*(s * x / 2 for s, x in zip(signs, size, strict=True))) for signs in _CORNERS]
-        nearest = max(
-            _CORNERS, key=lambda signs: sum(s * dot(look[2], row) for s, row in zip(signs, rows, strict=True))
-        )
+        corner = max(_CORNERS, key=lambda signs: sum(s * dot(look[2], row) for s, row in zip(signs, rows, strict=True)))
         edges = []
         for k in range(3):
-            other = tuple(-s if i == k else s for i, s in enumerate(nearest))
+            other = tuple(-s if i == k else s for i, s in enumerate(corner))
             first, second = (
-                flat(there(*(s * x / 2 for s, x in zip(signs, size, strict=True)))) for signs in (nearest, other)
+                flat(there(*(s * x / 2 for s, x in zip(signs, size, strict=True)))) for signs in (corner, other)
             )
             edges.append((first, second))
         return hull(map(flat, corners)), tuple(edges)

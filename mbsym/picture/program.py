@@ -156,24 +156,22 @@ def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -
     """
     live = program.live(outputs)
     instructions = [(number, program.instructions[number]) for number in live]
-    needed = {
-        str(instruction.payload): number for number, instruction in instructions if instruction.operation == "input"
-    }
+    needed = {str(step.payload): number for number, step in instructions if step.operation == "input"}
     unknown = sorted(needed.keys() - set(order))
     if unknown:
         text = "the places of bodies depend on what has no value: [[names]]"
         raise NoClosedForm(text, names=", ".join(unknown))
     inputs = tuple(name for name in order if name in needed)
     value = {needed[name]: k for k, name in enumerate(inputs)}
-    constants = [(number, instruction) for number, instruction in instructions if instruction.operation == "constant"]
+    constants = [(number, step) for number, step in instructions if step.operation == "constant"]
     for number, _ in constants:
         value[number] = len(value)
     tables: list[Curve] = []
     steps: list[tuple[Any, ...]] = []
-    for number, instruction in instructions:
-        if instruction.operation in ("input", "constant"):
+    for number, step in instructions:
+        if step.operation in ("input", "constant"):
             continue
-        name: str = instruction.operation
+        name: str = step.operation
         if isinstance(name, Tabulated):
             if name.curve not in tables:
                 tables.append(name.curve)
@@ -182,7 +180,7 @@ def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -
             name = _SHORT.get(name, name)
             if name not in OPERATIONS:
                 raise NoClosedForm("pictures do not know the operation [[name]]", name=name)
-        steps.append((name, *(value[k] for k in instruction.operands)))
+        steps.append((name, *(value[k] for k in step.operands)))
         value[number] = len(value)
-    numbers = tuple(float(instruction.payload) for _, instruction in constants)  # type: ignore[arg-type]
+    numbers = tuple(float(step.payload) for _, step in constants)  # type: ignore[arg-type]
     return PoseProgram(inputs, numbers, tuple(steps), tuple(tables)), value

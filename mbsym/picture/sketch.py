@@ -518,10 +518,8 @@ class _Paper:
                 case Stretch.DAMPER:
                     self._dashpot(line.of, first, second)
                 case Stretch.SLIDE:
-                    names_of = {
-                        x for hinge in self.bodies[line.of].joint.hinges if hinge.slides for x in hinge.coordinates
-                    }
-                    if not names_of & guided:
+                    axes = {x for hinge in self.bodies[line.of].joint.hinges if hinge.slides for x in hinge.coordinates}
+                    if not axes & guided:
                         self.line(line.of, (first, second), Ink.HIDDEN)
         if self.few:
             self._lengths()
@@ -751,9 +749,7 @@ class _Paper:
         name, value = guide.coordinate, self.state[guide.coordinate]
         middle_of = combined([1 / (len(curve) - 1)] * (len(curve) - 1), curve[:-1])
         radii = [dist(x, middle_of) for x in curve]
-        angle = any(
-            coordinate.name == name and coordinate.kind is Measure.ANGLE for coordinate in self.picture.coordinates
-        )
+        angle = any(x.name == name and x.kind is Measure.ANGLE for x in self.picture.coordinates)
         if not angle or max(radii) - min(radii) > 1e-6 * max(radii) or abs(value) < 0.05 or abs(value) > 2 * pi:
             return
         body = self.bodies[guide.body]
@@ -876,15 +872,13 @@ class _Paper:
 
     def _driven(self) -> None:
         """Axes in the paper about which something is turned by an angle that is prescribed."""
-        prescribed_angles = {prescribed.name for prescribed in self.system.prescribed}
+        driven = {prescribed.name for prescribed in self.system.prescribed}
         for body in self.picture.bodies:
             turns = [x for x in body.joint.hinges if not x.slides]
             if not self.picture.view.plane or len(turns) != 1 or turns[0].coordinates:
                 continue
             along = self.flat(self.point(turns[0].along))
-            name = sorted(
-                {x for angle in self.own[body.name].rotation.angles for x in names(angle)} & prescribed_angles
-            )
+            name = sorted({x for angle in self.own[body.name].rotation.angles for x in names(angle)} & driven)
             if len(name) != 1 or abs(hypot(*along) - 1) > 1e-6:
                 continue
             up, side = along, (along[1], -along[0])

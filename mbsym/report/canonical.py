@@ -12,8 +12,8 @@ from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.momenta import denominator_names
 from mbsym.model.system import System
 from mbsym.problems.canonical import DENOMINATORS
+from mbsym.report.documents import results as doc
 from mbsym.report.documents.base import Part, Write
-from mbsym.report.documents.results import canonical as doc
 from mbsym.report.latex.formulas import width
 from mbsym.report.lengths import formulas
 

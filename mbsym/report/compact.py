@@ -17,12 +17,13 @@ from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.telling import ToldSystem
-from mbsym.report.detail import FULL
 from mbsym.report.words.passages import Passage, passages
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
+#: How much a report for people writes out: ``compact`` tells long formulas through named intermediates.
+DETAILS = COMPACT, FULL = "compact", "full"
 #: A formula of so many terms takes some eight lines: longer ones are told through intermediates.
 LONGEST = 56
 #: So are the formulas of a problem that have more terms than this together, which is about a page.
@@ -123,10 +124,8 @@ def _formulas(result: Any) -> list[Formula] | None:
     """The formulas of a result as a report prints them; None where it has none."""
     match result:
         case Kinematics():
-            vectors = (
-                v for x in result.bodies for v in (x.angular_velocity, x.velocity_origin, x.velocity_mass_centre)
-            )
-            return [x for v in vectors for x in v]
+            vectors = ((x.angular_velocity, x.velocity_origin, x.velocity_mass_centre) for x in result.bodies)
+            return [entry for body in vectors for vector in body for entry in vector]
         case Energy():
             return [*result.A1, result.A0, result.force_function]
         case Equations():

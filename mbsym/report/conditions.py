@@ -350,12 +350,10 @@ def provided(stability: Stability, motion: Equilibrium | None, inputs: bool = Fa
     own, count = () if motion is None else motion.conditions, len(stability.presumed)
     known = [x for x in stability.presumed if any(rational_ratio(x.polynomial, y.polynomial) is not None for y in own)]
     if motion is not None and len(known) < count:
-        message = joined((Message("$[[left]] = 0$", left=x) for x in stability.presumed), ", ")
+        text = joined((Message("$[[left]] = 0$", left=x) for x in stability.presumed), ", ")
         if inputs:
-            return Message(
-                "while the inputs keep their values on the unperturbed motion, for [[wanted]]", wanted=message
-            )
-        return Message("provided that [[wanted]]", wanted=message)
+            return Message("while the inputs keep their values on the unperturbed motion, for [[wanted]]", wanted=text)
+        return Message("provided that [[wanted]]", wanted=text)
     count = len(own) if own and count else count
     if inputs:
         return _HELD[min(count, 2)]
@@ -453,18 +451,14 @@ def in_coefficients(ring: Ring, requirement: Requirement) -> InCoefficients | No
     return InCoefficients(Formula(own, value), tuple(stand_for))
 
 
-def _letters(even: bool, coefficients: list[Formula], factor: str, taken: frozenset[str]) -> list[str]:
+def _letters(even: bool, row: list[Formula], factor: str, taken: frozenset[str]) -> list[str]:
     """Names of the coefficients, from low to high powers, none of which is ``taken`` for something else."""
-    count = len(coefficients)
+    count = len(row)
     power, end = (2 if even else 1), f"_{factor}" if factor else ""
     stems = _STEMS if even else (*_STEMS[1:], *_STEMS[:1])
     listed = ([f"{stem}{power * k}{end}" for k in range(count)] for stem in stems)
     free = next(
-        (
-            names
-            for names in listed
-            if all(x not in taken or is_letter(c, x) for x, c in zip(names, coefficients, strict=True))
-        ),
+        (names for names in listed if all(x not in taken or is_letter(c, x) for x, c in zip(names, row, strict=True))),
         None,
     )
     return free or [f"coefficient{power * k}{end}" for k in range(count)]

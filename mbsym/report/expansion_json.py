@@ -15,7 +15,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.result import Choice, Hurwitz, Outcome
 from mbsym.report.documents import expansion as doc
-from mbsym.report.documents.base import Write, written
+from mbsym.report.documents.base import Write, file_of
 
 if TYPE_CHECKING:
     from mbsym.simulation.expanded import Measured
@@ -26,8 +26,7 @@ def expansion_json(
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     manifold = expansion_data(expansion, str)
-    measurement = measured_data(measured)
-    return written(doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measurement))
+    return file_of(doc.Expansion, system, manifold, values=values, measured=measured_data(measured))
 
 
 def expansion_data(expansion: Expansion, write: Write) -> doc.SlowManifold[Any]:

@@ -174,12 +174,10 @@ def _moving(ring: Ring, rate: str) -> Formula:
 
 
 def _motion(analysis: Analysis) -> Iterator[Line]:
-    equilibrium = analysis.equilibrium
-    if equilibrium.satisfied:
+    rest = analysis.equilibrium
+    if rest.satisfied:
         yield Line("", Message("the unperturbed motion satisfies the equations of motion identically"))
-    yield from (
-        Line("", x, "!=" if equilibrium.impossible else "=") for x in equilibrium.impossible or equilibrium.conditions
-    )
+    yield from (Line("", x, "!=" if rest.impossible else "=") for x in rest.impossible or rest.conditions)
 
 
 def _matrix(name: str) -> Callable[[Analysis], Iterator[Line]]:
@@ -204,10 +202,8 @@ def _determinants(analysis: Analysis) -> Iterator[Line]:
         if part.system is None or part.known is None:
             raise NoClosedForm("the characteristic polynomials of this system come from no matrices")
         matrices = part.system
-        by_power = (added(matrices.K, matrices.N), added(matrices.D, matrices.G), matrices.M)
-        rows = (
-            _freed(part.ring, part.known, zip(*(m[i] for m in by_power), strict=True)) for i in range(matrices.size)
-        )
+        powers = (added(matrices.K, matrices.N), added(matrices.D, matrices.G), matrices.M)
+        rows = (_freed(part.ring, part.known, zip(*(m[i] for m in powers), strict=True)) for i in range(matrices.size))
         entries = tuple(tuple(_in_factors(part, entry) for entry in row) for row in rows)
         remark = Message("of [[names]], up to a positive factor", names=", ".join(matrices.names))
         yield Line(f"Lambda{k}", Determinant(entries), remark=remark)
@@ -550,11 +546,7 @@ def _python(value: Value) -> str:
 
 
 def _plain(
-    value: Value,
-    formula: Callable[[Formula], str],
-    root: Callable[[RootNumbers], str],
-    listed: str,
-    comma: str = ", ",
+    value: Value, formula: Callable[[Formula], str], root: Callable[[RootNumbers], str], listed: str, comma: str = ", "
 ) -> str:
     """A formula, also the only one of a matrix, or several values side by side."""
     assert not isinstance(value, str | Determinant | InSmall)

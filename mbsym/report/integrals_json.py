@@ -10,15 +10,9 @@ from flint import fmpq, fmpz
 
 from mbsym.analysis.polynomial import InvariantRelations, Setting
 from mbsym.model.system import System
-from mbsym.problems.polynomial_integrals import (
-    Along,
-    Cases,
-    DarbouxAlong,
-    DarbouxPolynomials,
-    PolynomialIntegrals,
-)
+from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, DarbouxPolynomials, PolynomialIntegrals
 from mbsym.report.documents import integrals as doc
-from mbsym.report.documents.base import Write, written
+from mbsym.report.documents.base import Write, file_of
 
 
 def integrals_json(
@@ -42,10 +36,11 @@ def integrals_json(
     linear, darboux, levels, others = (
         None if invariant is None else getattr(invariant, name) for name in ("linear", "darboux", "levels", "others")
     )
-    data = doc.Integrals.from_result(
+    return file_of(
+        doc.Integrals,
+        system,
         basis,
         text,
-        system=system.name,
         values=values,
         weights=zip(basis.field.variables, basis.grading.weights, strict=True),
         along=None
@@ -73,7 +68,6 @@ def integrals_json(
             for level in others.levels
         ],
     )
-    return written(data)
 
 
 def _darboux(darboux: DarbouxPolynomials, variables: Sequence[str], text: Write, factor: Write) -> doc.Darboux:

@@ -21,9 +21,7 @@ def letters_of(system: System, requested: tuple[str, ...] | None = None) -> Lett
     known: dict[tuple[str, ...] | None, Letters] = vars(system).setdefault("_letters", {})
     if requested not in known:
         notation = tuple((symbol.name, symbol.value) for symbol in system.notation)
-        known[requested] = Letters(
-            (*notation, *((abbreviation.name, abbreviation.value) for abbreviation in system.abbreviations)), requested
-        )
+        known[requested] = Letters((*notation, *((item.name, item.value) for item in system.abbreviations)), requested)
     return known[requested]
 
 

@@ -12,7 +12,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.result import Harmonics
 from mbsym.report.documents import oscillations as doc
-from mbsym.report.documents.base import finite, written
+from mbsym.report.documents.base import file_of, finite
 from mbsym.report.words.expansion_words import sum_of_powers
 from mbsym.report.words.oscillation_words import numerator
 
@@ -25,9 +25,7 @@ def oscillations_json(
     system: System, values: Mapping[str, Fraction], solution: Oscillating, measured: MeasuredOrders | str
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    return written(
-        doc.Oscillations.from_result(oscillation_data(solution, measured), system=system.name, values=values)
-    )
+    return file_of(doc.Oscillations, system, oscillation_data(solution, measured), values=values)
 
 
 def oscillation_data(solution: Oscillating, measured: MeasuredOrders | str) -> doc.Oscillation:
@@ -116,9 +114,7 @@ def measured_data(measured: MeasuredOrders | str) -> doc.Measured:
         relative=[_two_digits(x) for x in measured.relative],
         errors=[
             doc.Error(
-                variable=name,
-                errors=[_two_digits(x) for x in errors],
-                order=None if order is None else round(order, 2),
+                variable=name, errors=[_two_digits(x) for x in errors], order=None if order is None else round(order, 2)
             )
             for name, errors, order in zip(measured.names, measured.errors, measured.orders, strict=True)
         ],

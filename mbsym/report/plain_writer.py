@@ -213,18 +213,16 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Relation) -> str:
-        written, before = "", None
+        text, before = "", None
         for x in value.parts:
             piece = self.inline(x).strip()
             called = isinstance(before, content.Symbol) and isinstance(x, content.Listed) and x.brackets
             factor = isinstance(before, content.Symbol) and not isinstance(x, str)
-            close = self.readable and (factor or isinstance(before, str) or (x == "=" and len(written) <= _SHORT))
+            close = self.readable and (factor or isinstance(before, str) or (x == "=" and len(text) <= _SHORT))
             behind = UNBROKEN if close else " "
-            written += (
-                "" if not written or called or piece[:1] in ":," or re.search("(^|=.)-$", written) else behind
-            ) + piece
+            text += ("" if not text or called or piece[:1] in ":," or re.search("(^|=.)-$", text) else behind) + piece
             before = x
-        return written
+        return text
 
     @inline.register
     def _(self, value: content.Number) -> str:

@@ -12,9 +12,8 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import decimal_text
 from mbsym.mechanics.regressor import KINDS, Standard
 from mbsym.mechanics.variables import program_environment
-from mbsym.report.documents import regressor as doc
-from mbsym.report.documents.base import written
-from mbsym.source.yaml_writer import meaning
+from mbsym.report.documents import parameters as doc
+from mbsym.report.documents.base import file_of
 
 if TYPE_CHECKING:
     from mbsym.formulas.formula import Formula
@@ -46,10 +45,11 @@ def _number(factor: Formula) -> str:
 
 def regressor_json(regressor: Regressor) -> str:
     """The file's text."""
-    content = doc.Regressor(
-        system=regressor.system.name,
-        description_sha256=meaning(regressor.system),
-        coordinates=list(regressor.system.coordinates),
+    return file_of(
+        doc.Regressor,
+        regressor.system,
+        regressor,
+        coordinates=regressor.system.coordinates,
         standard=len(regressor.standard),
         base=[
             doc.Base.from_result(
@@ -62,7 +62,6 @@ def regressor_json(regressor: Regressor) -> str:
         without_effect=[doc.Parameter(standard.body, standard.kind) for standard in regressor.without_effect],
         other_loads=regressor.besides,
     )
-    return written(content)
 
 
 def regressor_latex(regressor: Regressor) -> str:

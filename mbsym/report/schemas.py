@@ -57,9 +57,13 @@ _MODULES = {
     "average": "expansion",
     "equilibria_map": "branches",
     "floquet": "orbit",
-    "inverse": "trim",
+    "groups": "parameters",
+    "inverse": "parameters",
     "lyapunov": "orbit",
+    "regressor": "parameters",
     "sweep": "ensemble",
+    "symmetries": "integrals",
+    "trim": "parameters",
 }
 
 _SIMPLE: Mapping[Any, str] = {str: "string", int: "integer", float: "number", bool: "boolean", NoneType: "null"}
@@ -250,10 +254,8 @@ def _left_out(hint: Any) -> bool:
 def _fields(of: type[Struct]) -> dict[str, Any]:
     """Key in the file -> type, in the order of the file."""
     hints = get_type_hints(of, include_extras=True)
-    hints_by_key = {
-        key: hints[name] for name, key in zip(of.__struct_fields__, of.__struct_encode_fields__, strict=True)
-    }
-    return headed(hints_by_key)
+    typed = {key: hints[name] for name, key in zip(of.__struct_fields__, of.__struct_encode_fields__, strict=True)}
+    return headed(typed)
 
 
 def _remarked(found: Schema, remarks: list[Any]) -> Schema:

@@ -210,14 +210,7 @@ def _fmu_remark() -> str:
 EXPORTS = {
     target.name: target
     for target in (
-        Target(
-            "casadi",
-            "model_casadi.py",
-            (7,),
-            "functions for CasADi",
-            _exported("casadi"),
-            program=True,
-        ),
+        Target("casadi", "model_casadi.py", (7,), "functions for CasADi", _exported("casadi"), program=True),
         Target("jax", "model_jax.py", (7,), "functions for JAX", _exported("jax"), program=True),
         Target("octave", "model.m", (7,), "functions for MATLAB and Octave", _exported("octave"), program=True),
         Target("julia", "model.jl", (7,), "a module for Julia", _exported("julia"), program=True),

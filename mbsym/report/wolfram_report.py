@@ -34,11 +34,7 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.small import SmallParameters
 
-DIALECT = Dialect(
-    call=wolfram_call,
-    number=wolfram_number,
-    tables=True,
-)
+DIALECT = Dialect(call=wolfram_call, number=wolfram_number, tables=True)
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -50,13 +46,13 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     )
     names = wolfram_names(analysis.ring)
     stages = {number: analysis.stage(number) for number in problems}
-    solutions = {number: stage.value for number, stage in stages.items() if stage.failure is None}
+    solved = {number: stage.value for number, stage in stages.items() if stage.failure is None}
     used = {names[name] for name in names.table}
     forms = forms_of(analysis, problems)
-    long = withheld([*(solutions[number] for number in COUNTED if number in solutions), *forms.results], FILE)
-    closed = solutions.get(3)
+    long = withheld([*(solved[number] for number in COUNTED if number in solved), *forms.results], FILE)
+    closed = solved.get(3)
     if closed is not None and any(id(x) in long for x in formulas((closed.mass_matrix, closed.forcing))):
-        del solutions[3]  # equations that are not whole are none: the program takes their place
+        del solved[3]  # equations that are not whole are none: the program takes their place
 
     def written(value: Formula) -> str:
         if id(value) in long:
@@ -80,18 +76,16 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         },
         system=analysis.system,
         names=names,
-        found=solutions,
-        lines={n: [x.text for x in sections[n]()][1:] for n in (8, 9, 10, 11, 12) if n in solutions},
-        polynomial_formulas=[x.wolfram() for x in solutions[9].formulas] if 9 in solutions else [],
-        small_parameter_formulas=list(_of_small_parameters(solutions[12], analysis.system, names))
-        if 12 in solutions
-        else [],
+        found=solved,
+        lines={n: [x.text for x in sections[n]()][1:] for n in (8, 9, 10, 11, 12) if n in solved},
+        polynomial_formulas=[x.wolfram() for x in solved[9].formulas] if 9 in solved else [],
+        small_parameter_formulas=list(_of_small_parameters(solved[12], analysis.system, names)) if 12 in solved else [],
         forms=forms,
         undetermined=_undetermined(analysis) if 3 in problems else "",
         reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
-        code=_code(analysis) if 3 in stages and 3 not in solutions else None,
+        code=_code(analysis) if 3 in stages and 3 not in solved else None,
         tables=[wolfram_definition(table) for table in analysis.system.tables],
         prescribed=[(names[item.name], prescribed_value(item)) for item in analysis.system.prescribed],
         statements=statements,
@@ -100,45 +94,43 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         initial=[f"{left} == {wolfram_expression(value, names)}" for left, value in _initial(analysis.system, names)],
         state=_in_order(analysis.system, names),
         numberless=[names[name] for name in _numberless(analysis.system)],
-        **first_order(analysis, solutions.get(5)),
-        provided=provided(solutions[6], analysis.optional("equilibrium"), bool(analysis.system.inputs))
-        if 6 in solutions
+        **first_order(analysis, solved.get(5)),
+        provided=provided(solved[6], analysis.optional("equilibrium"), bool(analysis.system.inputs))
+        if 6 in solved
         else "",
         checks=analysis.checks,
     )
 
 
-def _of_small_parameters(
-    small_parameters: SmallParameters, system: System, names: WolframNames
-) -> Iterator[tuple[str, str]]:
+def _of_small_parameters(small: SmallParameters, system: System, names: WolframNames) -> Iterator[tuple[str, str]]:
     """Definitions: coefficients as {variable, power, formula}, their sums, effective potentials by phase."""
     from mbsym.report.sections.small_parameters import functions
     from mbsym.report.words import oscillation_words
     from mbsym.report.words.expansion_measured import averages
     from mbsym.report.words.expansion_words import coefficients
 
-    if small_parameters.slow is not None:
-        listed_ones = list(coefficients(small_parameters.slow))
+    if small.slow is not None:
+        listed_ones = list(coefficients(small.slow))
         for name, flow in (("slowManifold", False), ("slowFlow", True)):
             selected = ((x.variable + chr(39) * (x.rate - flow), x) for x in listed_ones if x.flow is flow)
             yield name, listed(f"{{{string(label)}, {x.order}, {x.formula.wolfram()}}}" for label, x in selected)
-    if small_parameters.oscillation is not None:
+    if small.oscillation is not None:
         terms = (
             f"{{{string(x.variable + chr(39) * x.rate)}, {x.order}, {x.formula.wolfram()}}}"
-            for x in oscillation_words.coefficients(small_parameters.oscillation)
+            for x in oscillation_words.coefficients(small.oscillation)
         )
         yield "periodicSolution", listed(terms)
-    for function in functions(small_parameters):
+    for function in functions(small):
         sums = {key: _sum(parts, function.small, names) for key, parts in function.series}
         rate = sums.pop(function.phase, "")
         put = (
-            f" /. {wolfram_names(small_parameters.oscillation.ring)[function.phase]}[t] -> ({rate})*t"
-            if small_parameters.oscillation and rate
+            f" /. {wolfram_names(small.oscillation.ring)[function.phase]}[t] -> ({rate})*t"
+            if small.oscillation and rate
             else ""
         )
         head, *rest = function.name.split("_")
         yield f"{head}{''.join(map(str.title, rest))}Of", listed(f"{string(k)} -> {x}" for k, x in sums.items()) + put
-    potentials = [average.averaged for average in averages(small_parameters, system) if average.averaged is not None]
+    potentials = [average.averaged for average in averages(small, system) if average.averaged is not None]
     if potentials:
         yield (
             "effectivePotentials",

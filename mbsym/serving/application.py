@@ -335,20 +335,9 @@ class Editor:
     # --- how they are wired -------------------------------------------------------------------------------------------
 
     def _starlette(self) -> Starlette:
-        posts: dict[str, Work] = {
-            "look": self.look,
-            "change": self.change,
-            "complete": self.complete,
-            "hover": self.hover,
-            "convert": self.convert,
-            "formula": self.formula,
-            "picture": self.picture,
-            "cancel": self.cancel,
-            "save": self.save,
-            "journal": self.journal,
-            "begin": self.begin,
-            "export": self.export,
-        }
+        of_text: tuple[Work, ...] = (self.look, self.change, self.complete, self.hover, self.convert, self.formula)
+        of_file: tuple[Work, ...] = (self.picture, self.cancel, self.save, self.journal, self.begin, self.export)
+        posts: dict[str, Work] = {work.__name__: work for work in (*of_text, *of_file)}
         posts |= {kind: self._job(kind) for kind in ("derive", "simulate", "equilibria", "modes", "map")}
         routes = [
             Route("/api/file", safely(self.file), methods=["GET"]),

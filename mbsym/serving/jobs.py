@@ -213,11 +213,7 @@ class Jobs:
             job.end(words)
 
     def result(
-        self,
-        task: Mapping[str, Any],
-        page: str = "",
-        seconds: float = 60.0,
-        begun: Callable[[str], None] | None = None,
+        self, task: Mapping[str, Any], page: str = "", seconds: float = 60.0, begun: Callable[[str], None] | None = None
     ) -> Event:
         """What a job of one message tells: that, or its failure.  Waits; not for an event loop.
 

@@ -193,7 +193,7 @@ def typed_formula(source: str) -> dict[str, Any]:
         tree = None
     else:
         flat = " ".join(source.split())
-        tree = parse_expression(flat, wrong, lambda start, end: Span(1, start + 1, max(1, end - start)))
+        tree = parse_expression(flat, wrong)
     if tree is None or wrong.errors:
         listed = complaints_json(wrong.sorted(), Offsets(source))
         return {"complaint": listed[0] if listed else None}

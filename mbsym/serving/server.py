@@ -33,14 +33,10 @@ class Connection(H11Protocol):
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
         if len(self.connections) > MOST_CONNECTIONS // 2:
-            silent = [
-                connection
-                for connection in self.connections
-                if isinstance(connection, Connection) and connection.cycle is None
-            ]
-            for connection in silent:
-                if connection is not self and connection.transport is not None:
-                    connection.transport.close()
+            silent = [other for other in self.connections if isinstance(other, Connection) and other.cycle is None]
+            for other in silent:
+                if other is not self and other.transport is not None:
+                    other.transport.close()
 
 
 class Server(uvicorn.Server):

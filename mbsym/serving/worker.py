@@ -366,9 +366,7 @@ def _map(task: Task, system: System) -> Iterator[Message]:
     image = next(iter(map_figure(system, verdict_map, language, ("png",)).values()))
     words = []
     if verdict_map.check is not None and not verdict_map.check.holds:
-        words = [
-            f"withdrawn, as the map's own check fails: {finding.mistake}" for finding in verdict_map.check.findings[:20]
-        ]
+        words = [f"withdrawn, as the map's own check fails: {flaw.mistake}" for flaw in verdict_map.check.findings[:20]]
     yield {"kind": "map", "image": f"data:image/png;base64,{b64encode(image).decode()}", "words": words}
 
 

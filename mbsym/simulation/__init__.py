@@ -15,24 +15,3 @@ from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
 from mbsym.simulation.run import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, integrated_system, simulate
 from mbsym.simulation.sampling import SAMPLES, sample_times
 from mbsym.simulation.watching import NoEvent, Watch, read_watch
-
-__all__ = [
-    "CERTIFYING",
-    "COMPILING",
-    "ESTIMATING",
-    "INTEGRATING",
-    "SAMPLES",
-    "SOON_DONE",
-    "TOLERANCE",
-    "Chosen",
-    "FollowedIntegral",
-    "NoEvent",
-    "Request",
-    "Simulation",
-    "Watch",
-    "integrated_system",
-    "read_values",
-    "read_watch",
-    "sample_times",
-    "simulate",
-]

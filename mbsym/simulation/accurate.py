@@ -104,11 +104,11 @@ def simulate_accurately(
     request = replace(request, estimate=request.estimate is not False)
     with stage(PLANNING):
         plan, settled = plan_for(scenario, request, accuracy, pins, tried)
-    simulation = simulate(scenario, settled, watch, stage)
+    run = simulate(scenario, settled, watch, stage)
     for again in range(REPEATS + 1):
         finer = _finer(plan)
         last = again == REPEATS or pins.setting is not None or finer == plan.setting
-        missed = _missed(plan, simulation, 1.0 if last else DOUBLED)
+        missed = _missed(plan, run, 1.0 if last else DOUBLED)
         if not missed:
             break
         if last:
@@ -117,13 +117,11 @@ def simulate_accurately(
         missed = Message("[[missed]]: repeated more finely", missed=missed)
         plan = replace(plan, setting=finer, remarks=(*plan.remarks, missed))
         settled = replace(settled, tolerance=plan.setting.tolerance, step=plan.setting.step)
-        simulation = simulate(scenario, settled, watch, stage)
-    if isinstance(simulation.error, NoEstimate) and simulation.error.why in UNSHOWN:
-        plan = replace(plan, unshown=simulation.error.why)
-    plan = replace(plan, bounds=tuple(_proved(bound, simulation) for bound in _raised(plan, simulation)))
-    return replace(
-        simulation, plan=plan, chosen=replace(simulation.chosen, why=Message("chosen for the accuracy asked for"))
-    )
+        run = simulate(scenario, settled, watch, stage)
+    if isinstance(run.error, NoEstimate) and run.error.why in UNSHOWN:
+        plan = replace(plan, unshown=run.error.why)
+    plan = replace(plan, bounds=tuple(_proved(bound, run) for bound in _raised(plan, run)))
+    return replace(run, plan=plan, chosen=replace(run.chosen, why=Message("chosen for the accuracy asked for")))
 
 
 def _raised(plan: Plan, simulation: Simulation) -> tuple[Bound, ...]:

@@ -120,14 +120,13 @@ def measured(
 class _Numbers:
     """The series of an expansion at numbers for its parameters, and eps."""
 
-    def __init__(self, found: Expansion, parameters: Mapping[str, Fraction], eps: Fraction) -> None:
+    def __init__(self, found: Expansion, values: Mapping[str, Fraction], eps: Fraction) -> None:
         self.expansion, self.eps = found, eps
         field, root = found.manifold.field.field, found.manifold.root
         names = [root.instead if root is not None and name == root.label else name for name in found.names]
         self.places = [names.index(name) for name in found.manifold.slow]
         self.known = [
-            rationals.exact(parameters[name]) if name in parameters and name not in field.variables else None
-            for name in names
+            rationals.exact(values[name]) if name in values and name not in field.variables else None for name in names
         ]
 
     def _at(self, s: Sequence[Fraction]) -> list[fmpq]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import Expression, names
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
@@ -108,18 +108,16 @@ def gradient_of(
 ) -> Gradient:
     """See ``mbsym.numerics.orbits.variational``; raises ValueError for what cannot be read or differentiated by."""
     complaints = Complaints()
-    expression = parse_expression(functional, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    tree = parse_expression(functional, complaints)
     known = {*system.coordinates, *system.velocities, *system.parameter_names, "pi"}
     wrong = [item.message for item in complaints.items]
-    wrong += [
-        f"unknown name {name}" for name in sorted((names(expression) if expression is not None else set()) - known)
-    ]
+    wrong += [f"unknown name {name}" for name in sorted((names(tree) if tree is not None else set()) - known)]
     following = {relation.name for relation in system.relations}
     wrong += [f"there is nothing called {name} to differentiate by" for name in variables if name not in known - {"pi"}]
     wrong += [f"{name} follows from other parameters" for name in variables if name in following]
-    if wrong or expression is None:
+    if wrong or tree is None:
         raise ValueError("; ".join(wrong))
-    return gradient_at_end(scenario_of(system, values), expression, variables, time, values)
+    return gradient_at_end(scenario_of(system, values), tree, variables, time, values)
 
 
 # How a motion answers to changes of its initial state and of parameters, along the whole of it.

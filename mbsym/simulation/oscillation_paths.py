@@ -67,11 +67,8 @@ def oscillation_paths(
     base = scenario(system, put)
     parameters = {name: Fraction(value) for name, value in base.parameters.items()}
     powers = dict(solution.oscillation.powers)
-    eps = (
-        parameters[solution.oscillation.small]
-        if solution.oscillation.small in solution.field.parameters
-        else Fraction(1)
-    )
+    small = solution.oscillation.small
+    eps = parameters[small] if small in solution.field.parameters else Fraction(1)
     numeric = Numeric(solution, parameters | symbol_values(base, solution, powers, eps, values or {}), eps)
     units = {name: float(eps) ** powers.get(name, 0) for name in solution.oscillation.names}
     period = 2 * pi / abs(numeric.rate)

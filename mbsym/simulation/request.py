@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
@@ -92,7 +92,7 @@ def read_values(system: System, values: Mapping[str, Expression | Fraction | flo
     for name, value in values.items():
         complaints = Complaints()
         if isinstance(value, str):
-            read = parse_expression(value, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+            read = parse_expression(value, complaints)
             unknown = sorted(names(read) - {*system.parameter_names, "pi"}) if read is not None else []
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             wrong += [f"{name} = {value}: unknown name {other}" for other in unknown]

@@ -106,25 +106,23 @@ def simulate(
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
     with stage(INTEGRATING):
-        trajectory = _trajectory(dynamics, method, chosen, request, watch, integrals)
+        motion = _trajectory(dynamics, method, chosen, request, watch, integrals)
     happened = None
     if watching is not None:
-        trajectory, happened = watching.happened(trajectory)
-    trajectory = replace(
-        trajectory, between=trajectory.between or kinetic_between(dynamics, trajectory, chosen.completed)
-    )
-    error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if trajectory.whole else Lacking.NOT_WHOLE)
+        motion, happened = watching.happened(motion)
+    motion = replace(motion, between=motion.between or kinetic_between(dynamics, motion, chosen.completed))
+    error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if motion.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
         held = resting.names if resting is not None and resting.proved else ()
-        dense = between_rows(dynamics, trajectory, chosen.method, request.arithmetic)
-        pivot = nearest_to_singular(dynamics, trajectory, dense, chosen.method, request.arithmetic)
-        trajectory, dense = replace(trajectory, least_pivot=pivot), replace(dense, least_pivot=pivot)
+        dense = between_rows(dynamics, motion, chosen.method, request.arithmetic)
+        pivot = nearest_to_singular(dynamics, motion, dense, chosen.method, request.arithmetic)
+        motion, dense = replace(motion, least_pivot=pivot), replace(dense, least_pivot=pivot)
         both = energies(dynamics, dense, held)
-        followed = kept_integrals(dynamics, trajectory, integrals, held, dense)
-        own = cost(dynamics, trajectory.method, request.arithmetic, trajectory.work)
-        if trajectory.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
+        followed = kept_integrals(dynamics, motion, integrals, held, dense)
+        own = cost(dynamics, motion.method, request.arithmetic, motion.work)
+        if motion.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
             limit = inf if request.estimate else max(LEAST, AT_MOST * own)
-            error = estimated(dynamics, trajectory, chosen.method, request.arithmetic, chosen.completed, limit)
+            error = estimated(dynamics, motion, chosen.method, request.arithmetic, chosen.completed, limit)
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
         error = NoEstimate(Lacking.CONTRADICTED)
     certificate = None
@@ -134,12 +132,12 @@ def simulate(
         with stage(CERTIFYING):
             seen = None if happened is None else happened.occurrences
             certification = (request.certify, request.certify_seconds, request.certify_limit)
-            certificate = certified(dynamics, trajectory.times, trajectory.states, *certification, watch, seen)
+            certificate = certified(dynamics, motion.times, motion.states, *certification, watch, seen)
     return Simulation(
-        *(scenario, dynamics, request, chosen, trajectory, *both, followed, error, missing),
+        *(scenario, dynamics, request, chosen, motion, *both, followed, error, missing),
         *(certificate, happened, original, None, closed),
-        None if closed is None else drift_along(dynamics, trajectory),
-        () if closed is None else stepped_over(dynamics, dense.times, dense.states, trajectory.work.singular),
+        None if closed is None else drift_along(dynamics, motion),
+        () if closed is None else stepped_over(dynamics, dense.times, dense.states, motion.work.singular),
     )
 
 
@@ -182,10 +180,7 @@ def refuse_in_run(system: System, request: Request) -> None:
         refuse_constraints(system, "linearised equations in numbers")
     if not runs_in_states(system, request):
         return
-    features = {
-        "a linear model": request.model.linear,
-        "going on from an earlier run": request.earlier is not None,
-    }
+    features = {"a linear model": request.model.linear, "going on from an earlier run": request.earlier is not None}
     wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in features.items() if there]
     if wrong:
         raise ValueError("; ".join(wrong))
@@ -268,13 +263,9 @@ def energies(dynamics: Dynamics, trajectory: Trajectory, held: Collection[str]) 
     return generalized, confronted("energy", known, trajectory.energy, scale, doubt, measure)
 
 
-def _seen(trajectory: Trajectory, name: str, values: Any) -> Any:
+def _seen(motion: Trajectory, name: str, values: Any) -> Any:
     """States of a run at which a quantity changes most, and others: among all rows, where these are some of them."""
-    return (
-        visited(trajectory.times, trajectory.states, values)
-        if trajectory.table is None
-        else trajectory.table.visited[name]
-    )
+    return visited(motion.times, motion.states, values) if motion.table is None else motion.table.visited[name]
 
 
 def _near(trajectory: Trajectory) -> list[list[float]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsym.algebra.failures import Failure
 from mbsym.expressions.condition import Condition, parse_axes, parse_condition
-from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints, in_line
 from mbsym.expressions.tree import Expression, Name, names
 from mbsym.model.states import InStates
 from mbsym.model.system import System, velocity_name
@@ -109,7 +109,7 @@ def read_watch(
 
     def read(option: str, text: str) -> Condition | None:
         complaints = Complaints()
-        parsed_condition = parse_condition(text, known, complaints, _place)
+        parsed_condition = parse_condition(text, known, complaints, in_line)
         complain(option, text, complaints)
         return parsed_condition
 
@@ -119,7 +119,7 @@ def read_watch(
     if axes and section is None and unread is None:
         wrong.append("axes are those of a section, and there is none")
     complaints = Complaints()
-    written = parse_axes(axes, known, complaints, _place) if axes else ()
+    written = parse_axes(axes, known, complaints, in_line) if axes else ()
     complain("axes", axes, complaints)
     if wrong:
         raise ValueError("; ".join(wrong))
@@ -128,10 +128,6 @@ def read_watch(
         tuple(end for end in ends if end is not None),
         None if condition is None else section_of(system, condition, written),
     )
-
-
-def _place(start: int, end: int) -> Span:
-    return Span(1, start + 1, max(1, end - start))
 
 
 def section_of(
@@ -193,11 +189,7 @@ def _without(occurrences: Occurrences, event: int) -> Occurrences:
         which=occurrences.which[rest],
         turns=occurrences.turns[rest],
         states=occurrences.states[:, rest],
-        undecided=tuple(
-            undecided_event
-            for undecided_event in occurrences.undecided
-            if undecided_event is not occurrences.events[event]
-        ),
+        undecided=tuple(item for item in occurrences.undecided if item is not occurrences.events[event]),
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.expressions.constants import out_of_range
 from mbsym.expressions.parser import names_apart, parse_expression
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaints, Span, in_line
 from mbsym.expressions.tree import KINKED, Expression, number
 from mbsym.source.scope import Allowed, Scope
 
@@ -68,7 +68,7 @@ def _read(
     for name, value in values.items():
         complaints = Complaints()
         if isinstance(value, str):
-            law = read_law(value, system, complaints, _span, allowed)
+            law = read_law(value, system, complaints, in_line, allowed)
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             if law is not None:
                 expressions[name] = law
@@ -81,10 +81,6 @@ def _read(
     if wrong:
         raise ValueError("; ".join(wrong))
     return expressions
-
-
-def _span(start: int, end: int) -> Span:
-    return Span(1, start + 1, max(1, end - start))
 
 
 def _scope(system: System, complaints: Complaints) -> Scope:

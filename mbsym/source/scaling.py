@@ -12,10 +12,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, parse_expression
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaints, Span, in_line
 from mbsym.expressions.rates import ENDINGS, velocity_name
 from mbsym.expressions.tree import CONSTANTS, ONE, Expression, Name, names, substitute, walk
 from mbsym.model.reducing import Asked, Reducing
@@ -23,16 +24,6 @@ from mbsym.model.scaling import Scaled, Scaling, Weights, factor_of
 from mbsym.model.system import System
 from mbsym.source.scope import did_you_mean, listed, why_no_name
 from mbsym.source.units.system import Dimensions, Form, dimensions_of
-
-
-@dataclass(frozen=True)
-class _Places:
-    """Offsets in what is right of a sign of equality to places."""
-
-    offset: int
-
-    def __call__(self, start: int, end: int) -> Span:
-        return Span(1, self.offset + start + 1, max(1, end - start))
 
 
 @dataclass(frozen=True)
@@ -146,7 +137,7 @@ def assignments(text: str, complaints: Complaints, start: int = 0) -> Iterator[I
         if not equals or not name or not right.strip():
             yield Item(piece.strip() if equals else name, span, ONE, bare=True)
             continue
-        value = parse_expression(right, complaints, _Places(offset + len(left) + 1))
+        value = parse_expression(right, complaints, partial(in_line, offset=offset + len(left) + 1))
         if value is not None:
             yield Item(name, span, value)
 

@@ -8,18 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
 from mbsym.studies.request import Named, Names, Number
-from mbsym.studies.study import (
-    Answer,
-    Asked,
-    Document,
-    Refusal,
-    Single,
-    Study,
-    Unfit,
-    Watch,
-    failed,
-    refused,
-)
+from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Unfit, Watch, failed, refused
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -168,12 +157,11 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 
 def as_json(context: Asked, request: Request, derived: Found) -> str:
-    from mbsym.report.documents.base import written
+    from mbsym.report.documents.base import file_of
     from mbsym.report.documents.expansion import Average
     from mbsym.report.expansion_json import measured_data
 
-    measurement = measured_data(derived.measured)
-    return written(Average.from_result(derived.averaged, system=context.system.name, measured=measurement))
+    return file_of(Average, context.system, derived.averaged, measured=measured_data(derived.measured))
 
 
 STUDY = Study(

@@ -8,18 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
 from mbsym.studies.request import Number, Numbers, Whole
-from mbsym.studies.study import (
-    DESCRIPTION,
-    Answer,
-    Asked,
-    Exit,
-    Refusal,
-    Study,
-    Unfit,
-    Watch,
-    failed,
-    refused,
-)
+from mbsym.studies.study import DESCRIPTION, Answer, Asked, Exit, Refusal, Study, Unfit, Watch, failed, refused
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion

@@ -174,10 +174,10 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 
 def as_json(context: Asked, request: Request, derived: Found) -> str:
-    from mbsym.report.documents.base import written
-    from mbsym.report.documents.groups import Groups as Document
+    from mbsym.report.documents.base import file_of
+    from mbsym.report.documents.parameters import Groups as Document
 
-    return written(Document.from_result(derived.groups, system=context.system.name))
+    return file_of(Document, context.system, derived.groups)
 
 
 STUDY = Study(

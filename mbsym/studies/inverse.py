@@ -84,11 +84,11 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 
 def as_json(context: Asked, request: Request, dynamics: InverseDynamics) -> str:
-    from mbsym.report.documents.base import written
-    from mbsym.report.documents.trim import Inverse
+    from mbsym.report.documents.base import file_of
+    from mbsym.report.documents.parameters import Inverse
 
     inputs = zip(dynamics.names, dynamics.inputs, strict=True)
-    return written(Inverse.from_result(dynamics, system=context.system.name, inputs=inputs))
+    return file_of(Inverse, context.system, dynamics, inputs=inputs)
 
 
 STUDY = Study("inverse", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False)

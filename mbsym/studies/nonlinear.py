@@ -10,19 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import ExactSettings, Range
-from mbsym.studies.study import (
-    Answer,
-    Asked,
-    Line,
-    NotFit,
-    Refusal,
-    Study,
-    Unfit,
-    Watch,
-    failed,
-    line,
-    missing,
-)
+from mbsym.studies.study import Answer, Asked, Line, NotFit, Refusal, Study, Unfit, Watch, failed, line, missing
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -9,19 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
 from mbsym.studies.request import ExactSettings, Text, Whole, formats, language
-from mbsym.studies.study import (
-    DESCRIPTION,
-    Answer,
-    Asked,
-    Exit,
-    Folder,
-    Refusal,
-    Study,
-    Unfit,
-    Watch,
-    failed,
-    refused,
-)
+from mbsym.studies.study import DESCRIPTION, Answer, Asked, Exit, Folder, Refusal, Study, Unfit, Watch, failed, refused
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
@@ -89,8 +77,7 @@ class Request:
     of: Annotated[str | None, Text("NAME", "The variable whose oscillation leads, where there are several.")] = None
     frequency: Annotated[int, Whole("K", "Of several that it shares with others, the K-th.", most=99, shown=False)] = 1
     values: Annotated[
-        Mapping[str, Fraction],
-        ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set", more=symbols),
+        Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set", more=symbols)
     ] = field(default_factory=dict)
     scale: Annotated[str | None, Text("LIST", "Dimensionless variables and parameters: p=r_0*p1,t=tau/r_0,A=a*C.")] = (
         None
@@ -172,11 +159,9 @@ def _no_rates(text: str, system: System) -> Iterator[Unfit]:
         if reason is not None:
             message = Message("[[name]] cannot be a new name: [[reason]]", name=ascii_safe(name), reason=reason[0])
             yield Unfit("--integral", "bad-name", message, reason[1])
-        for unknown in sorted(names(item.value) - {*known}):
-            message = Message("there is no variable called [[name]]", name=repr(unknown[:60]))
-            yield Unfit(
-                "--integral", "unknown-name", message, did_you_mean(unknown, known) or listed("there are", known)
-            )
+        for other in sorted(names(item.value) - {*known}):
+            message = Message("there is no variable called [[name]]", name=repr(other[:60]))
+            yield Unfit("--integral", "unknown-name", message, did_you_mean(other, known) or listed("there are", known))
 
 
 @dataclass(frozen=True)

@@ -66,43 +66,37 @@ def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfi
         example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
         lacks = Message("no number for [[names]]", names=", ".join(lacking))
         yield Unfit("--set", "missing-value", lacks, Message("for example [[example]]", example=example))
-    for problem in dict.fromkeys(wrong):
-        match problem.fault:
+    for flaw in dict.fromkeys(wrong):
+        match flaw.fault:
             case Fault.RELATED:
-                message = Message(FOLLOWS, name=problem.name, how=problem.about)
+                message = Message(FOLLOWS, name=flaw.name, how=flaw.about)
                 yield Unfit(axis_option, "given-by-relation", message, "take those of which its relation is made")
             case Fault.SOLVED:
-                message = Message(
-                    "[[name]] has one value on the motion only: [[how]]", name=problem.name, how=problem.about
-                )
+                message = Message("[[name]] has one value on the motion only: [[how]]", name=flaw.name, how=flaw.about)
                 yield Unfit(axis_option, "given-by-motion", message, "take those of which its value is made")
             case Fault.DEPENDENT:
-                message = Message("[[name]] is not independent of the parameters", name=problem.name)
-                if problem.about:
-                    message = Message(
-                        "[[name]] is not independent of [[others]]", name=problem.name, others=problem.about
-                    )
+                message = Message("[[name]] is not independent of the parameters", name=flaw.name)
+                if flaw.about:
+                    message = Message("[[name]] is not independent of [[others]]", name=flaw.name, others=flaw.about)
                 yield Unfit(axis_option, "not-independent", message, "leave one of them out")
             case Fault.SIGN:
                 message = Message(
-                    "[[name]] is declared [[sign]], or is by its definition",
-                    name=problem.name,
-                    sign=worded(problem.about),
+                    "[[name]] is declared [[sign]], or is by its definition", name=flaw.name, sign=worded(flaw.about)
                 )
                 yield Unfit("--set", "against-sign", message, "choose a number of that sign")
             case Fault.NOWHERE:
                 text = "the motion of the description exists nowhere there: [[why]]"
-                message = Message(text, why=worded(problem.name or problem.about))
+                message = Message(text, why=worded(flaw.name or flaw.about))
                 yield Unfit("--set", "no-motion", message, "see problem 4 for the conditions")
             case Fault.OUTSIDE:
-                message = Message("no point of the map keeps what has to be kept: [[what]]", what=worded(problem.about))
+                message = Message("no point of the map keeps what has to be kept: [[what]]", what=worded(flaw.about))
                 yield Unfit("--set", "outside", message, "choose other values, or another interval")
             case Fault.IRRATIONAL:
                 message = Message(
-                    "the matrices hold what is no rational number there: [[what]]", what=worded(problem.name)
+                    "the matrices hold what is no rational number there: [[what]]", what=worded(flaw.name)
                 )
                 remedy = "choose values at which roots and angles are rational; 'mbsym sweep' judges stability at any"
                 yield Unfit("--set", "irrational", message, remedy)
             case Fault.SINGULAR:
-                message = Message("a division by zero in [[what]]", what=worded(problem.name))
+                message = Message("a division by zero in [[what]]", what=worded(flaw.name))
                 yield Unfit("--set", "division-by-zero", message, "choose other values")

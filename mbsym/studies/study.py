@@ -315,12 +315,9 @@ def missing(shown: Sequence[str], what: str = "value") -> Unfit:
     if positions:
         places.append(f"initial: {{{positions[0]}: 1, ...}}")
     hint = Message("[[example]], or in the file  [[places]]", example=example, places=",  ".join(places))
-    position = " (its initial position)"
+    suffix = " (its initial position)"
     listed = joined(
-        (
-            Message("[[name]] (its initial position)", name=x.split(" ")[0]) if x.endswith(position) else x
-            for x in shown
-        ),
+        (Message("[[name]] (its initial position)", name=x.split(" ")[0]) if x.endswith(suffix) else x for x in shown),
         ", ",
     )
     return Unfit(DESCRIPTION, "missing-value", Message(_LACKING[what], names=listed), hint)

@@ -104,8 +104,7 @@ class Request:
     jobs: Annotated[int | None, Whole("N", "Threads.", "-j", usual="as many as there are processors", most=1000)] = None
     cluster: Annotated[str | None, Text("ADDRESS", "A Dask scheduler, tcp://host:8786, or 'local'.")] = None
     shard: Annotated[
-        tuple[int, int] | None,
-        Share("I/N", "Only every N-th chunk, the I-th first; then once without, to join them."),
+        tuple[int, int] | None, Share("I/N", "Only every N-th chunk, the I-th first; then once without, to join them.")
     ] = None
 
     @property
@@ -256,31 +255,29 @@ def answer(context: Asked, request: Request, swept: Swept) -> Answer:
     from mbsym.report.runs.sweep_files import sentences, sweep_csv, sweep_json, sweep_parquet
     from mbsym.sweeps.statistics import total
 
-    points, columns = swept.points, swept.measure.columns
+    points, fields = swept.points, swept.measure.columns
     admissibility = getattr(swept.measure, "admissibility", None)  # what could not be looked at, of a section
     left_out = () if admissibility is None else tuple(admissibility.left_out)
-    totals = total(columns, points.names, swept.parts())
+    totals = total(fields, points.names, swept.parts())
     files: dict[str, Any] = {}
     if "csv" in request.format:
-        files["sweep.csv"] = sweep_csv(points.names, columns, swept.parts())
+        files["sweep.csv"] = sweep_csv(points.names, fields, swept.parts())
     if "parquet" in request.format:
-        files["sweep.parquet"] = sweep_parquet(points.names, columns, swept.parts())
+        files["sweep.parquet"] = sweep_parquet(points.names, fields, swept.parts())
     kinds = [kind for kind in request.format if kind in ("svg", "png", "pdf")]
     if kinds and points.count <= MOST_DRAWN:
         import numpy as np
 
         from mbsym.report.figures.sweep_figure import sweep_figure
 
-        values = np.concatenate([part[columns[0].name] for _, part in swept.parts()])
-        files |= sweep_figure(
-            context.system, points, columns[0], values, kinds, _fixed(context.system, points, request)
-        )
+        values = np.concatenate([part[fields[0].name] for _, part in swept.parts()])
+        files |= sweep_figure(context.system, points, fields[0], values, kinds, _fixed(context.system, points, request))
     table = next((name for name in files if name.startswith("sweep.")), "")
     settings = {name: str(value) for name, value in request.values.items()}
     files["sweep.json"] = sweep_json(
-        context.system, points, settings, request.wanted.name, columns, totals, table, left_out
+        context.system, points, settings, request.wanted.name, fields, totals, table, left_out
     )
-    return Answer([facts(sentences(points, columns, totals, left_out))], files)
+    return Answer([facts(sentences(points, fields, totals, left_out))], files)
 
 
 def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:

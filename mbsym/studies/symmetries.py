@@ -52,10 +52,10 @@ def answer(context: Asked, request: Request, symmetries: Symmetries) -> Answer:
 
 
 def as_json(context: Asked, request: Request, symmetries: Symmetries) -> str:
-    from mbsym.report.documents.base import written
-    from mbsym.report.documents.symmetries import Symmetries as Document
+    from mbsym.report.documents import integrals as doc
+    from mbsym.report.documents.base import file_of
 
-    return written(Document.from_result(symmetries, system=context.system.name, values=request.values))
+    return file_of(doc.Symmetries, context.system, symmetries, values=request.values)
 
 
 def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:

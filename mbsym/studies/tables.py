@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
 from math import inf
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,11 +16,10 @@ import numpy as np
 from mbsym.expressions.guessing import guess
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.rest import given_values, missing_values
-from mbsym.model.system import System
 from mbsym.numerics.extremes.extremes import Extremes
 from mbsym.numerics.extremes.singular import SingularSet
 from mbsym.numerics.trade.tradeoff import Study
-from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria
+from mbsym.problems.relative_equilibria.equilibria import Equilibria
 from mbsym.studies.described import moving_system
 
 if TYPE_CHECKING:
@@ -41,6 +41,12 @@ class Table:
         listed = [tuple(row) for row in rows]
         transposed = zip(*listed, strict=True) if listed else ((),) * len(columns)
         return cls(tuple(columns), tuple(map(_array, transposed)))
+
+    @classmethod
+    def about(cls, items: Iterable[object], columns: Mapping[str, str | Callable[[Any], object]]) -> Table:
+        """A row for each item: attributes of it, ``work.steps``, or what functions make of it, by their titles."""
+        cells = [attrgetter(column) if isinstance(column, str) else column for column in columns.values()]
+        return cls.of(tuple(columns), ([cell(item) for cell in cells] for item in items))
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         """A column.  Raises KeyError for a name that is none, with a guess."""
@@ -143,164 +149,6 @@ class EquilibriaStudy:
         return self.table._repr_html_()
 
 
-def _tradeoff(
-    system: System,
-    time: float,
-    values: Mapping[str, Fraction | float | str],
-    target: float,
-    budget: float,
-    methods: Sequence[str] | None,
-    models: bool,
-) -> TradeoffStudy:
-    """See ``mbsym.tradeoff``."""
-    from mbsym.numerics.methods.table import METHODS
-    from mbsym.numerics.scenario import scenario
-    from mbsym.numerics.trade.tradeoff import advice, studied
-    from mbsym.simulation import read_values
-
-    names = tuple(METHODS) if methods is None else tuple(methods)
-    for name in names:
-        if name not in METHODS:
-            raise ValueError(f"there is no method '{name}'{guess(name, METHODS)}")
-    motion = scenario(system, read_values(system, values), declared=True)
-    study = studied(motion, [METHODS[name] for name in names], time, budget, models)
-    drift_columns = ("constraint_drift", "constraint_velocity_drift") if system.constraints else ()
-    runs = Table.of(
-        (
-            "method",
-            "arithmetic",
-            "tolerance",
-            "step",
-            "error",
-            "drift",
-            *drift_columns,
-            "evaluations",
-            "steps",
-            "seconds",
-            "front",
-        ),
-        (
-            (
-                row.method.traits.name,
-                row.scalar,
-                _or_nan(row.setting.tolerance),
-                _or_nan(row.setting.step),
-                row.error,
-                row.drift,
-                *((row.strayed or (inf, inf)) if drift_columns else ()),
-                row.work.evaluations,
-                row.work.steps,
-                row.seconds,
-                row.front,
-            )
-            for row in study.trade.rows
-        ),
-    )
-    compared = Table.of(
-        ("model", "error", "operations", "seconds"),
-        ((row.model, row.error, row.operations, row.seconds) for row in study.models),
-    )
-    return TradeoffStudy(runs, compared, advice(study.trade, target), study.trade.reference.error, study)
-
-
-def _extremes(system: System, values: Mapping[str, Fraction | float | str], budget: float) -> ExtremesStudy:
-    """See ``mbsym.extremes``."""
-    from mbsym.mechanics.variables import ring_of
-    from mbsym.numerics.extremes.extremes import extremes as measured
-    from mbsym.numerics.extremes.extremes_told import sentences
-    from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
-    from mbsym.numerics.scenario import scenario
-    from mbsym.simulation import read_values
-
-    read: dict[str, Expression] = read_values(system, values)
-    extreme_cases = measured(scenario(system, read), ring_of(system), read, budget)
-    digits = Table.of(
-        ("kind", "subject", "size", "quantity", "digits_float64", "digits_float32", "condition", "loses"),
-        (
-            (
-                row.kind,
-                row.subject,
-                row.size,
-                row.quantity,
-                row.digits.digits[FLOAT64],
-                row.digits.digits[FLOAT32],
-                row.digits.condition,
-                row.digits.verdict,
-            )
-            for row in extreme_cases.rows
-        ),
-    )
-    verdicts = Table.of(
-        ("kind", "subject", "size", "verdict", "theorem", "float64_wrong"),
-        (
-            (x.kind, x.subject, x.size, x.judged.exact.word.value, x.judged.exact.theorem, x.judged.wrong(FLOAT64))
-            for x in extreme_cases.verdicts
-        ),
-    )
-    where = extreme_cases.singularities
-    singular = Table.of(
-        ("where", "fails", "joint", "proved"),
-        (
-            (
-                " and ".join(f"{name} = {_label(singular_set, number, name)}" for name in place),
-                singular_set.kind,
-                singular_set.joint,
-                singular_set.proved,
-            )
-            for singular_set in (where.sets if where is not None else ())
-            for number, place in enumerate(singular_set.places)
-        ),
-    )
-    complete = where is not None and where.complete
-    return ExtremesStudy(
-        digits, verdicts, singular, complete, tuple(sentences(extreme_cases)), extreme_cases.left_out, extreme_cases
-    )
-
-
-def _label(singular_set: SingularSet, number: int, name: str) -> str:
-    """A value of a set's coordinate, exact where it is known."""
-    return (
-        singular_set.values[number].label if singular_set.values else f"{float(singular_set.places[number][name]):.12g}"
-    )
-
-
-def _equilibria(system: System, values: Mapping[str, Fraction | int | str], within: float) -> EquilibriaStudy:
-    """See ``mbsym.equilibria``."""
-    from mbsym.analysis.resting import relative_equilibria
-
-    exact: dict[str, Fraction] = {}
-    for name, value in values.items():
-        if name not in system.parameter_names:
-            raise ValueError(f"unknown parameter '{name}'{guess(name, system.parameter_names)}")
-        if isinstance(value, float):
-            raise ValueError(f"equilibria are exact: write Fraction('{value}') for {name}")
-        exact[name] = Fraction(value)
-    numbers = given_values(system, exact)
-    missing = missing_values(system, numbers)
-    if missing:
-        raise ValueError(f"no number for {', '.join(missing)}")
-    equilibrium_set = relative_equilibria(system, numbers, within)
-    names = system.coordinates
-
-    def row(equilibrium: Any) -> tuple[object, ...]:
-        known = {item.name: item.value for item in equilibrium.values}
-        coordinates = (float(known.get(name, np.nan)) for name in names)
-        return (
-            *coordinates,
-            equilibrium.verdict.word.value,
-            equilibrium.verdict.theorem,
-            equilibrium.proof,
-            equilibrium.coordinates_of,
-        )
-
-    table = Table.of((*names, "verdict", "theorem", "proof", "angles_of"), map(row, equilibrium_set.equilibria))
-    return EquilibriaStudy(table, equilibrium_set.complete, equilibrium_set.remarks, equilibrium_set)
-
-
-def _or_nan(value: float | None) -> float:
-    return float("nan") if value is None else float(value)
-
-
 def tradeoff(
     source: str | Path | Analysis,
     time: float,
@@ -321,15 +169,44 @@ def tradeoff(
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``; Breakdown where there is no reference
     solution up to ``time``.
     """
-    names = None if methods is None else tuple(methods)
-    return _tradeoff(moving_system(source), time, values or {}, target, budget, names, models)
+    from mbsym.numerics.methods.table import METHODS
+    from mbsym.numerics.scenario import scenario
+    from mbsym.numerics.trade.tradeoff import advice, studied
+    from mbsym.simulation import read_values
+
+    system = moving_system(source)
+    names = tuple(METHODS if methods is None else methods)
+    for name in names:
+        if name not in METHODS:
+            raise ValueError(f"there is no method '{name}'{guess(name, METHODS)}")
+    motion = scenario(system, read_values(system, values or {}), declared=True)
+    study = studied(motion, [METHODS[name] for name in names], time, budget, models)
+    drifts: dict[str, Callable[[Any], object]] = {
+        "constraint_drift": lambda row: (row.strayed or (inf, inf))[0],
+        "constraint_velocity_drift": lambda row: (row.strayed or (inf, inf))[1],
+    }
+    runs = Table.about(
+        study.trade.rows,
+        {
+            "method": "method.traits.name",
+            "arithmetic": "scalar",
+            "tolerance": lambda row: _or_nan(row.setting.tolerance),
+            "step": lambda row: _or_nan(row.setting.step),
+            "error": "error",
+            "drift": "drift",
+            **(drifts if system.constraints else {}),
+            "evaluations": "work.evaluations",
+            "steps": "work.steps",
+            "seconds": "seconds",
+            "front": "front",
+        },
+    )
+    compared = Table.about(study.models, {name: name for name in ("model", "error", "operations", "seconds")})
+    return TradeoffStudy(runs, compared, advice(study.trade, target), study.trade.reference.error, study)
 
 
 def extremes(
-    source: str | Path | Analysis,
-    *,
-    values: Mapping[str, Fraction | float | str] | None = None,
-    budget: float = 60.0,
+    source: str | Path | Analysis, *, values: Mapping[str, Fraction | float | str] | None = None, budget: float = 60.0
 ) -> ExtremesStudy:
     """How many digits each quantity keeps at the extremes, as far as ``budget`` goes: ``mbsym extremes``.
 
@@ -337,7 +214,58 @@ def extremes(
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
     """
-    return _extremes(moving_system(source), values or {}, budget)
+    from mbsym.mechanics.variables import ring_of
+    from mbsym.numerics.extremes.extremes import extremes as measured
+    from mbsym.numerics.extremes.extremes_told import sentences
+    from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
+    from mbsym.numerics.scenario import scenario
+    from mbsym.simulation import read_values
+
+    system = moving_system(source)
+    read: dict[str, Expression] = read_values(system, values or {})
+    result = measured(scenario(system, read), ring_of(system), read, budget)
+    rung = {name: name for name in ("kind", "subject", "size")}
+    digits = Table.about(
+        result.rows,
+        {
+            **rung,
+            "quantity": "quantity",
+            "digits_float64": lambda row: row.digits.digits[FLOAT64],
+            "digits_float32": lambda row: row.digits.digits[FLOAT32],
+            "condition": "digits.condition",
+            "loses": "digits.verdict",
+        },
+    )
+    verdicts = Table.about(
+        result.verdicts,
+        {
+            **rung,
+            "verdict": "judged.exact.word.value",
+            "theorem": "judged.exact.theorem",
+            "float64_wrong": lambda row: row.judged.wrong(FLOAT64),
+        },
+    )
+    where = result.singularities
+    singular = Table.of(
+        ("where", "fails", "joint", "proved"),
+        (
+            (
+                " and ".join(f"{name} = {_label(singular_set, number, name)}" for name in place),
+                singular_set.kind,
+                singular_set.joint,
+                singular_set.proved,
+            )
+            for singular_set in (where.sets if where is not None else ())
+            for number, place in enumerate(singular_set.places)
+        ),
+    )
+    complete = where is not None and where.complete
+    return ExtremesStudy(digits, verdicts, singular, complete, tuple(sentences(result)), result.left_out, result)
+
+
+def _label(locus: SingularSet, number: int, name: str) -> str:
+    """A value of a set's coordinate, exact where it is known."""
+    return locus.values[number].label if locus.values else f"{float(locus.places[number][name]):.12g}"
 
 
 def equilibria(
@@ -352,7 +280,32 @@ def equilibria(
 
     Raises DescriptionError, ValueError for a parameter without a number, Failure where they cannot be listed.
     """
-    return _equilibria(moving_system(source), values or {}, within)
+    from mbsym.analysis.resting import relative_equilibria
+
+    system = moving_system(source)
+    exact: dict[str, Fraction] = {}
+    for name, value in (values or {}).items():
+        if name not in system.parameter_names:
+            raise ValueError(f"unknown parameter '{name}'{guess(name, system.parameter_names)}")
+        if isinstance(value, float):
+            raise ValueError(f"equilibria are exact: write Fraction('{value}') for {name}")
+        exact[name] = Fraction(value)
+    numbers = given_values(system, exact)
+    missing = missing_values(system, numbers)
+    if missing:
+        raise ValueError(f"no number for {', '.join(missing)}")
+    equilibrium_set = relative_equilibria(system, numbers, within)
+    names = system.coordinates
+
+    def row(equilibrium: Any) -> tuple[object, ...]:
+        known = {item.name: item.value for item in equilibrium.values}
+        coordinates = (float(known.get(name, np.nan)) for name in names)
+        verdict = (equilibrium.verdict.word.value, equilibrium.verdict.theorem)
+        return (*coordinates, *verdict, equilibrium.proof, equilibrium.coordinates_of)
+
+    table = Table.of((*names, "verdict", "theorem", "proof", "angles_of"), map(row, equilibrium_set.equilibria))
+    return EquilibriaStudy(table, equilibrium_set.complete, equilibrium_set.remarks, equilibrium_set)
 
 
-__all__ = ["WITHIN", "EquilibriaStudy", "ExtremesStudy", "Table", "TradeoffStudy", "equilibria", "extremes", "tradeoff"]
+def _or_nan(value: float | None) -> float:
+    return float("nan") if value is None else float(value)

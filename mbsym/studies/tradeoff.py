@@ -11,24 +11,12 @@ from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.request import Flag, Number, Settings, Value, Words
 from mbsym.studies.request import duration as length
-from mbsym.studies.study import (
-    Answer,
-    Asked,
-    Exit,
-    Folder,
-    Line,
-    Refusal,
-    Study,
-    Watch,
-    failed,
-    line,
-)
+from mbsym.studies.study import Answer, Asked, Exit, Folder, Line, Refusal, Study, Watch, failed, line
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.trade import tradeoff as trade_study
-    from mbsym.numerics.trade.tradeoff import Measured
     from mbsym.report.content import Block
 
 
@@ -186,16 +174,12 @@ def _runs(request: Request, study: trade_study.Study) -> Block:
     from mbsym.report.content import aligned, column
     from mbsym.report.runs.tradeoff_table import constrained, shown
 
-    near = [row for row in study.trade.rows if row.front or _near(row, request.target)]
+    near = [row for row in study.trade.rows if row.front or request.target / 10 < row.error < request.target * 10]
     rows = study.trade.rows if request.all_rows else near
     drift_columns = ("constraints",) if constrained(rows) else ()
     names = ("method", "setting", "error", "drift", *drift_columns, "evaluations", "steps", "time", "cost", "front")
     columns = [column(Message(name), right=name not in ("method", "setting", "front")) for name in names]
     return aligned(columns, shown(rows, study.trade.smallest_judged))
-
-
-def _near(row: Measured, target: float) -> bool:
-    return target / 10 < row.error < target * 10
 
 
 def _models(study: trade_study.Study) -> Block:

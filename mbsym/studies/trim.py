@@ -102,11 +102,7 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
 
 
 def answer(context: Asked, request: Request, trimmed: Trim) -> Answer:
-    held = [
-        system_input
-        for system_input in context.system.inputs
-        if request.solve and system_input.name not in request.solve
-    ]
+    held = [signal for signal in context.system.inputs if request.solve and signal.name not in request.solve]
     return Answer(_lines(trimmed, held), code=Exit.FAILED if trimmed.impossible else Exit.OK)
 
 
@@ -123,10 +119,7 @@ def _lines(trimmed: Trim, held: Sequence[Input]) -> Iterator[Block]:
         (Message("divided by, not to be 0"), [f"{x} != 0" for x in trimmed.assumed]),
         (Message("demanded by the declared signs"), [f"{name} = {x} {sign} 0" for name, x, sign in trimmed.signed]),
         (Message("the motion itself has to satisfy"), [f"{x} = 0" for x in trimmed.conditions]),
-        (
-            Message("held at their values on the motion"),
-            [f"{system_input.name} = {text(system_input.held)}" for system_input in held],
-        ),
+        (Message("held at their values on the motion"), [f"{signal.name} = {text(signal.held)}" for signal in held]),
     ):
         if several:
             yield Subheading((title,))
@@ -139,10 +132,10 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 
 def as_json(context: Asked, request: Request, trimmed: Trim) -> str:
-    from mbsym.report.documents.base import written
-    from mbsym.report.documents.trim import Trim as Document
+    from mbsym.report.documents.base import file_of
+    from mbsym.report.documents.parameters import Trim as Document
 
-    return written(Document.from_result(trimmed, system=context.system.name))
+    return file_of(Document, context.system, trimmed)
 
 
 STUDY = Study("trim", Request, trim.derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None)

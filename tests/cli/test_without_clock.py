@@ -43,7 +43,7 @@ COMMANDS: dict[str, str] = {
 BUSY = ("switches", "accuracy")
 
 #: What is told only where a budget of theirs has cut something: the budgets above are small on purpose.
-CUT = {"extremes": "beyond the budget", "positions": "found from 3 starts", "cases": "not looked at within the budget"}
+CUT = {"extremes": "beyond the budget", "positions": "found from 3 starts", "cases": "Families beyond the budget"}
 
 #: Runs commands in one process, whose clocks are those of the first argument; prints what each came to.
 PROGRAM = """

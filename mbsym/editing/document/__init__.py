@@ -2,5 +2,3 @@
 
 from mbsym.editing.document.changing import changes
 from mbsym.editing.document.view import formula, look
-
-__all__ = ["changes", "formula", "look"]

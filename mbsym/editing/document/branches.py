@@ -111,8 +111,7 @@ def _names(number: int, body: NewBody) -> set[str]:
 def _declared(document: Written, parameters: dict[str, NewParameter]) -> list[Primitive]:
     """These parameters, positive."""
     new: dict[str, Data] = {
-        name: {"sign": "positive", "value": parameter.value, "meaning": parameter.meaning}
-        for name, parameter in parameters.items()
+        name: {"sign": "positive", "value": x.value, "meaning": x.meaning} for name, x in parameters.items()
     }
     node = None if document.tree is None else child(document.tree, "parameters")
     if isinstance(node, Mapping) and node.entries:

@@ -41,16 +41,12 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
     try:
         if len(operations) > MOST_OPERATIONS:
             raise Refused("too-large", f"at most {MOST_OPERATIONS} operations are done at once")
-        if not isinstance(document.tree, Mapping) or any(
-            problem.code in _NOT_CHANGED for problem in document.complaints
-        ):
+        if not isinstance(document.tree, Mapping) or any(flaw.code in _NOT_CHANGED for flaw in document.complaints):
             document = written(text, name, folder=folder)
-            if not any(problem.severity == "error" for problem in document.complaints):
+            if not any(flaw.severity == "error" for flaw in document.complaints):
                 raise Refused("wrong-shape", "a description is a mapping of keys to values")
-            first = [
-                problem for problem in document.complaints if problem.code in _NOT_CHANGED
-            ] or document.complaints.errors
-            return {"complaints": [complaint_view(document, problem) for problem in first]}
+            first = [flaw for flaw in document.complaints if flaw.code in _NOT_CHANGED] or document.complaints.errors
+            return {"complaints": [complaint_view(document, flaw) for flaw in first]}
         pieces = Pieces(document.text)
         select: Path = ()
         taken: list[Path] = []

@@ -97,9 +97,8 @@ def duplicate(document: Written, operation: Json) -> Meant:
         copies[index] = applied_to(copies[index], Remove(("speeds",)))
     root = copies[branch[0]]
     if isinstance(root, dict) and child(node_at(tree, ("bodies", branch[0])) or tree, "attached to") is None:
-        copies[branch[0]] = applied_to(
-            root, Add(("attached to",), "0", after="name")
-        )  # only the first body need not say it
+        # Only the first body need not say it.
+        copies[branch[0]] = applied_to(root, Add(("attached to",), "0", after="name"))
     last, primitives = branch[-1] + 1, []
     for done, index in enumerate(branch):
         primitives.append(Add(("bodies", last + done), copies[index]))

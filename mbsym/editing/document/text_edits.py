@@ -232,12 +232,7 @@ def _new_block(section: str, number: int, lines: Iterable[Line]) -> str:
 
 
 def _listed(
-    document: Written,
-    primitive: Primitive,
-    section: str,
-    there: _There,
-    old: list[list[Line]],
-    new: list[list[Line]],
+    document: Written, primitive: Primitive, section: str, there: _There, old: list[list[Line]], new: list[list[Line]]
 ) -> list[Edit]:
     """The blocks of one list: those that stay patched and numbered, others written, taken out or moved."""
     blocks = there.lists.get(section, [])

@@ -21,7 +21,7 @@ from mbsym.editing.document.written import (
 )
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import ONE, Derivation, Expression, Name, names, text
 from mbsym.formulas.mathml import MathNames, row, table
@@ -65,7 +65,7 @@ def look(text: str, name: str) -> Json:
 def formula(source: str) -> Json:
     """A formula as it is typed: ``{"mathml": ...}``, or ``{"complaint": ...}`` with offsets in ``source``."""
     complaints = Complaints()
-    tree = parse_expression(source, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    tree = parse_expression(source, complaints)
     if tree is not None and not complaints.errors:
         return {"mathml": math(content(tree))}
     complaint = next(iter(complaints.errors), Complaint("syntax", "this is no formula"))
@@ -154,10 +154,6 @@ def source_of(document: Written, node: Node) -> str:
         return spelled
 
 
-def _items(node: Node) -> tuple[Node, ...]:
-    return node.items if isinstance(node, Sequence) else ()
-
-
 # --- loads, constraints -----------------------------------------------------------------------------------------------
 
 
@@ -176,7 +172,7 @@ def ties(document: Written, tree: Mapping, section: str, owners: dict[str, str] 
     """Loads or constraints: their kinds and the bodies that they name; what acts on a coordinate acts on the body that
     introduces it (``owners``)."""
     nodes = child(tree, section)
-    for index, node in enumerate(_items(nodes) if nodes is not None else ()):
+    for index, node in enumerate(nodes.items if isinstance(nodes, Sequence) else ()):
         start, end = document.extent(node)
         entry = node.entries[0] if isinstance(node, Mapping) and node.entries else None
         kind = "" if entry is None else ALIASES.get(entry.key.text, entry.key.text)
@@ -259,13 +255,8 @@ def complaint_view(document: Written, complaint: Complaint) -> Json:
     )
 
 
-def _told(complaint: Complaint, start: int, end: int, line: int, column: int) -> Json:
-    fields = {
-        "severity": complaint.severity,
-        "code": complaint.code,
-        "message": complaint.message,
-        "hint": complaint.hint,
-    }
+def _told(fault: Complaint, start: int, end: int, line: int, column: int) -> Json:
+    fields = {"severity": fault.severity, "code": fault.code, "message": fault.message, "hint": fault.hint}
     return fields | {"from": start, "to": end, "line": line, "column": column}
 
 
@@ -308,11 +299,7 @@ def mathml_of(node: Node) -> str | None:
         return None
     if all(isinstance(item, Sequence) for item in node.items):
         rows = [_cells(item) for item in node.items]
-        return (
-            None
-            if any(row_cells is None for row_cells in rows)
-            else math(table([row_cells for row_cells in rows if row_cells is not None]))
-        )
+        return None if any(row is None for row in rows) else math(table([row for row in rows if row is not None]))
     cells = _cells(node)
     return None if cells is None else math(row(cells))
 

@@ -100,9 +100,7 @@ def _type_of(holder: Record | Kinds, node: Mapping, entry: Entry) -> Type:
     key = known.get(ALIASES.get(entry.key.text, entry.key.text))
     if key is not None and isinstance(key.type, About):
         kinds = [
-            inner_entry.value.text
-            for inner_entry in node.entries
-            if inner_entry.key.text == "claim" and isinstance(inner_entry.value, Scalar)
+            item.value.text for item in node.entries if item.key.text == "claim" and isinstance(item.value, Scalar)
         ]
         return BodyName() if any(kind in CLAIMS and CLAIMS[kind].of == BODY for kind in kinds) else Formula()
     if key is None and isinstance(holder, Kinds):

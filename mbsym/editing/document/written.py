@@ -128,23 +128,13 @@ def written(text: str, name: str, understand: bool = True, folder: Folder | None
     Files that it names are looked for in ``folder``.
     """
     extents: dict[int, Extent] = {}
-    read_result = read_placed(text, name, folder, extents, understand)
+    parsed = read_placed(text, name, folder, extents, understand)
     plain = normalised(text)
     starts, position = [0], plain.find("\n")
     while position >= 0:
         starts.append(position + 1)
         position = plain.find("\n", position + 1)
-    return Written(
-        plain,
-        name,
-        read_result.tree,
-        read_result.editor,
-        read_result.system,
-        read_result.complaints,
-        extents,
-        starts,
-        folder,
-    )
+    return Written(plain, name, parsed.tree, parsed.editor, parsed.system, parsed.complaints, extents, starts, folder)
 
 
 def original_offsets(text: str) -> list[int] | None:
@@ -298,9 +288,5 @@ def block(data: Data, indent: int) -> str:
     """A mapping with an entry a line, from the second line on indented; anything else in one line."""
     if not isinstance(data, dict) or not data:
         return flow(data)
-    lines = [f"{key(name)}: {_inner(value)}" for name, value in data.items()]
+    lines = [f"{key(k)}: {scalar(x, flow=False) if isinstance(x, str) else flow(x)}" for k, x in data.items()]
     return ("\n" + " " * indent).join(lines)
-
-
-def _inner(data: Data) -> str:
-    return scalar(data, flow=False) if isinstance(data, str) else flow(data)

@@ -212,16 +212,12 @@ def _indentation(document: Written) -> int:
 
 def _dash(document: Written, item: Node) -> int:
     """Where the dash of an item stands, first in its line."""
-    position = document.extent(item)[0] - 1
-    while position >= 0 and document.text[position] in " \t\n":
-        position -= 1
-    if (
-        position < 0
-        or document.text[position] != "-"
-        or document.text[document.line_start(position) : position].strip()
-    ):
+    place = document.extent(item)[0] - 1
+    while place >= 0 and document.text[place] in " \t\n":
+        place -= 1
+    if place < 0 or document.text[place] != "-" or document.text[document.line_start(place) : place].strip():
         raise Refused("bad-path", "this list is written in a way that is not changed here", "change it in the text")
-    return position
+    return place
 
 
 # --- gone and moved ---------------------------------------------------------------------------------------------------

@@ -82,12 +82,7 @@ def call(function: str, argument: str) -> str:
     return f"{'fabs' if function == 'abs' else function}({argument})"
 
 
-DIALECT = Dialect(
-    call=call,
-    number=number,
-    angle=angle_name,
-    tables=True,
-)
+DIALECT = Dialect(call=call, number=number, angle=angle_name, tables=True)
 
 
 def render(analysis: Analysis, problems: Sequence[int], whole: bool = True) -> str:

@@ -10,7 +10,7 @@ a node marked ``repeated``, and goes on from there; so no line is long and none 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import ceil
@@ -117,7 +117,9 @@ def interconnection(system: System, most_rows: int = MOST_ROWS, most_columns: in
     first = {node.number: k for k, node in reversed(list(enumerate(nodes)))}
     joints = tuple(_joint(system, nodes, before, after) for before, after in lines)
     between = tuple(
-        Interaction(first[numbers[a]], first[numbers[b]], kind) for a, b, kind in _interactions(system) if a != b
+        Interaction(first[numbers[a]], first[numbers[b]], kind)
+        for a, b, kind in (load.link for load in system.loads if load.link is not None)
+        if a != b
     )
     return Interconnection(tuple(nodes), joints, between, widest, top + shelf)
 
@@ -135,10 +137,6 @@ def _joint(system: System, nodes: Sequence[Node], before: int, after: int) -> Jo
     moving = set(system.coordinates) | {item.name for item in system.prescribed} | {"t"}
     slides = any(names(component) & moving for component in body.connection_point)
     return Joint(before, after, tuple(body.rotation.turns()), body.coordinates, slides)
-
-
-def _interactions(system: System) -> Iterator[tuple[str, str, str]]:
-    return (load.link for load in system.loads if load.link is not None)
 
 
 # --- strips -----------------------------------------------------------------------------------------------------------

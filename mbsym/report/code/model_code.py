@@ -333,9 +333,7 @@ def _named_parts(dynamics: NamedDynamics, n: int, tied: bool) -> Iterator[Part]:
             column: dict[Place, Node] = {(i,): x for i, x in enumerate(quantity.nodes)}
             nodes = _nonzero(quantity.program, column)
             yield Part(name, words, (n,), quantity.program, nodes, argument, bool(argument))
-    called = injective(
-        [frame_code.name for frame_code in dynamics.frames], lambda name: re.sub(r"\W", "_", name, flags=re.ASCII)
-    )
+    called = injective([frame.name for frame in dynamics.frames], lambda name: re.sub(r"\W", "_", name, flags=re.ASCII))
     for frame in dynamics.frames:
         for stem, words, computed, shape in (
             ("pose", "[[R, r], [0, 1]]: inertial axes from its own are R, its origin is r", frame.pose, (4, 4)),

@@ -86,11 +86,7 @@ def _called(function: str) -> str:
     return identifier(function) if isinstance(function, Tabulated) else f"np.{_NUMPY.get(function, function)}"
 
 
-DIALECT = Dialect(
-    call=lambda function, argument: f"{_called(function)}({argument})",
-    angle=angle_name,
-    tables=True,
-)
+DIALECT = Dialect(call=lambda function, argument: f"{_called(function)}({argument})", angle=angle_name, tables=True)
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:

@@ -24,10 +24,13 @@ from math import isfinite
 from numbers import Real
 from operator import attrgetter
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Self, SupportsFloat, TypeVar, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, SupportsFloat, TypeVar, Union, get_args, get_origin
 
 from msgspec import UNSET, Meta, Struct, UnsetType, field, to_builtins
 from msgspec.structs import FieldInfo, fields
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
 
 # Documents written as text.
 
@@ -189,6 +192,15 @@ class Part(Struct, frozen=True, forbid_unknown_fields=True, rename=lambda name: 
         else:
             values = given | {name: find(source) for name in left if (find := sources[name][0]) is not None}
         return cls(**{name: sources[name][1](x, write) for name, x in values.items()})
+
+
+def file_of(kind: type[Part], system: System, source: object, write: Write = str, /, **given: Any) -> str:
+    """The text of a file of this kind, which tells a result of the system: ``Part.from_result``, and its head."""
+    if "description_sha256" in kind.__struct_fields__:
+        from mbsym.source.yaml_writer import meaning
+
+        given = {"description_sha256": meaning(system)} | given
+    return written(kind.from_result(source, write, system=system.name, **given))
 
 
 #: The items of a list belong to the coordinates, one each.

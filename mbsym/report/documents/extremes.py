@@ -23,10 +23,6 @@ def _rounded(digits: Any) -> Any:
     return {name: round(x, 2) for name, x in digits.items()} if isinstance(digits, Mapping) else round(digits, 2)
 
 
-def _rounded_to_3(cost: float) -> float:
-    return round(cost, 3)
-
-
 class Set(Part, frozen=True):
     """one set, whatever the coordinates are that it does not name"""
 
@@ -91,7 +87,9 @@ class Compensated(Part, frozen=True):
         float, "fewest digits of the plain kernel at the states looked at", From("compensation.before", _rounded)
     ]
     digits_with: Annotated[float, "fewest digits of the kernel that is used", From("compensation.after", _rounded)]
-    cost: Annotated[float, "operations, as a multiple of the plain kernel's", From("compensation.cost", _rounded_to_3)]
+    cost: Annotated[
+        float, "operations, as a multiple of the plain kernel's", From("compensation.cost", lambda cost: round(cost, 3))
+    ]
 
 
 class Row(Part, frozen=True):

@@ -22,10 +22,7 @@ from mbsym.report.documents.parts import Axis, Number, Verdict
 #: Which condition a curve comes from.
 ORIGINS = tuple(x.value for x in Origin if x not in OF_EQUILIBRIA)
 #: Whether there is a verdict at a place, and if not, why.
-STANDINGS = (
-    "judged",
-    *(Lack.OUTSIDE, Lack.MASSLESS, Lack.UNDEFINED, Lack.TOO_LARGE, Lack.WITHDRAWN, Lack.NOT_REACHED),
-)
+STANDINGS = ("judged", *(Lack.OUTSIDE, Lack.MASSLESS, Lack.UNDEFINED, Lack.TOO_LARGE, Lack.WITHDRAWN, Lack.NOT_REACHED))
 
 
 def demanded(demands: Sequence[Demanded]) -> list[str]:
@@ -106,9 +103,7 @@ class Place(Part, frozen=True, kw_only=True):
 
     number: Annotated[int, "its place in this list"]
     point: Annotated[
-        list[Number],
-        "the exact point at which it was judged, a coordinate for each axis",
-        From("sample", _coordinates),
+        list[Number], "the exact point at which it was judged, a coordinate for each axis", From("sample", _coordinates)
     ]
     standing: StandingThere
     broken: Broken
@@ -187,14 +182,17 @@ class SoftOrHard(Part, frozen=True):
     ]
 
 
+SoftOrHardThere = Annotated[
+    SoftOrHard | UnsetType | None,
+    "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
+    "elsewhere, or where that was not asked",
+]
+
+
 class Arc(Place, frozen=True, kw_only=True):
     """an arc"""
 
-    soft_or_hard: Annotated[
-        SoftOrHard | UnsetType | None,
-        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
-        "elsewhere, or where that was not asked",
-    ] = UNSET
+    soft_or_hard: SoftOrHardThere = UNSET
     curves: Annotated[list[int], "the curves that it is part of"]
     regions: Annotated[
         list[int | None],
@@ -207,11 +205,7 @@ class Arc(Place, frozen=True, kw_only=True):
 class Corner(Place, frozen=True, kw_only=True):
     """a corner"""
 
-    soft_or_hard: Annotated[
-        SoftOrHard | UnsetType | None,
-        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
-        "elsewhere, or where that was not asked",
-    ] = UNSET
+    soft_or_hard: SoftOrHardThere = UNSET
     curves: Annotated[list[int], "the curves through it"]
     arcs: Annotated[list[int], "the arcs that meet there"]
     kind: Annotated[str, words("crossing", "singular", "isolated", "edge", "zero"), "what it is"]
@@ -223,9 +217,7 @@ class Picture(Part, frozen=True):
     slices: Annotated[list[int], "by their numbers", From("layers")]
     shown: Annotated[int, "the slice that stands for them"]
     not_looked_at: Annotated[
-        list[int],
-        "slices among them that were not looked at: nothing is said of these single values",
-        From("unseen"),
+        list[int], "slices among them that were not looked at: nothing is said of these single values", From("unseen")
     ]
     low: Annotated[Number, "from this value of the third axis"]
     low_belongs: Annotated[bool, "whether that value belongs to it"]

@@ -95,7 +95,5 @@ class CoordinateValue(Part, frozen=True):
 
 Coordinates = Annotated[list[CoordinateValue], "constant coordinates", From("values")]
 AnglesOf = Annotated[
-    str | None,
-    "the body whose other angles these are; null for the description's own",
-    From("coordinates_of", or_null),
+    str | None, "the body whose other angles these are; null for the description's own", From("coordinates_of", or_null)
 ]

@@ -281,9 +281,7 @@ class Certificate(Part, frozen=True):
 
     whole: Annotated[bool, "whether all rows are enclosed"]
     ended: Annotated[
-        str | None,
-        words("no_step_proved", "too_wide", "out_of_time", "too_dear", "interrupted"),
-        "why they are not",
+        str | None, words("no_step_proved", "too_wide", "out_of_time", "too_dear", "interrupted"), "why they are not"
     ]
     reached: Annotated[float | str, "the time up to which the solution is enclosed"]
     rows: Annotated[int, "how many rows are enclosed", Meta(ge=0)]
@@ -345,9 +343,7 @@ class Model(Part, frozen=True):
     """what of the mechanics is in the equations"""
 
     gravity: Annotated[
-        int | str | None,
-        "order of Newtonian gravity where it is not that of the description",
-        words(2, 3, 4, "exact"),
+        int | str | None, "order of Newtonian gravity where it is not that of the description", words(2, 3, 4, "exact")
     ]
     linear: Annotated[bool, "whether they are linearised about the unperturbed motion"]
     without: Annotated[list[str], "parameters taken as zero"]

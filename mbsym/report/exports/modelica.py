@@ -148,31 +148,26 @@ def _results(
     """(name, unit, words, value or three components) of energies, integrals, places of bodies."""
     known = model.system.units if _in_seconds(model.system) else Units()
     energy, length = modelica(known.text(ENERGY)), modelica(known.text(LENGTH))
-    for function in shown:
-        rows = function.rows("0.0") if function.shape else []
-        if not function.shape:
-            yield (
-                _free(function.name, used),
-                energy,
-                function.words,
-                function.entries[0][1] if function.entries else "0.0",
-            )
-        elif function.name == "integrals":
+    for result in shown:
+        rows = result.rows("0.0") if result.shape else []
+        if not result.shape:
+            yield (_free(result.name, used), energy, result.words, result.entries[0][1] if result.entries else "0.0")
+        elif result.name == "integrals":
             for item, row in zip(model.integrals, rows, strict=True):
                 yield _free(f"integral_{item.name}", used), "", f"{item.title}: constant ({item.status})", row[0]
-        elif function.name in ("constraints", "constraint_velocity", "multipliers"):
-            stem = {"constraints": "constraint_position", "multipliers": "multiplier"}.get(function.name, function.name)
-            what = "lambda" if function.name == "multipliers" else "zero"
+        elif result.name in ("constraints", "constraint_velocity", "multipliers"):
+            stem = {"constraints": "constraint_position", "multipliers": "multiplier"}.get(result.name, result.name)
+            what = "lambda" if result.name == "multipliers" else "zero"
             for place, (label, row) in enumerate(zip(labels, rows, strict=False), 1):
                 yield _free(f"{stem}_{place}", used), "", f"{what}: {label}", row[0]
-        elif function.name == "reactions":
+        elif result.name == "reactions":
             for place, (joint, row) in enumerate(zip(model.system.reactions, rows, strict=True), 1):
                 for what, part in (("force", row[:3]), ("moment", row[3:])):
                     yield _free(f"{what}_in_joint{place}", used), "", f"{what} in the joint of {joint}", part
-        elif function.name in ("joints", "mass_centres"):
-            words = "connection point" if function.name == "joints" else "mass centre"
+        elif result.name in ("joints", "mass_centres"):
+            words = "connection point" if result.name == "joints" else "mass centre"
             for place, (body, row) in enumerate(zip(model.system.bodies, rows, strict=True), 1):
-                name = _free(f"{'joint' if function.name == 'joints' else 'centre'}{place}", used)
+                name = _free(f"{'joint' if result.name == 'joints' else 'centre'}{place}", used)
                 yield name, length, f"{words} of {body.name}, in inertial axes", row
 
 

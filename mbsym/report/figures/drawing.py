@@ -126,15 +126,13 @@ def styled() -> Iterator[None]:
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
-        installed = fontManager.ttflist
+        fonts = fontManager.ttflist
         # Every font of every size is looked for among all that are installed, which may be thousands.
-        fontManager.ttflist = [
-            font for font in installed if font.fname.startswith(matplotlib.get_data_path())
-        ] or installed
+        fontManager.ttflist = [font for font in fonts if font.fname.startswith(matplotlib.get_data_path())] or fonts
         try:
             yield
         finally:
-            fontManager.ttflist = installed
+            fontManager.ttflist = fonts
 
 
 def pictures(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:

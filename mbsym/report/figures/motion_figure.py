@@ -84,16 +84,16 @@ class _View:
         return np.tensordot(places, self.towards, (-2, 0))
 
 
-def _motion(positions: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:
-    view, say = _View(positions), spoken(positions.system)
-    flat = view(positions.places)
+def _motion(motion: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:
+    view, say = _View(motion), spoken(motion.system)
+    flat = view(motion.places)
     low, high = np.min(flat, axis=(0, 2)), np.max(flat, axis=(0, 2))
     for shape in shapes:
-        whole = view(shape.places[:, : len(positions.times)])
+        whole = view(shape.places[:, : len(motion.times)])
         low = np.minimum(low, np.min(whole, axis=1) - shape.reach)
         high = np.maximum(high, np.max(whole, axis=1) + shape.reach)
-    if positions.tips:
-        for centre, radius in _spheres(positions, flat):  # the whole sphere on which the tips move
+    if motion.tips:
+        for centre, radius in _spheres(motion, flat):  # the whole sphere on which the tips move
             low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
     spread = np.maximum(high - low, 0.25 * float(np.max(high - low)))
     centre = (low + high) / 2
@@ -104,22 +104,20 @@ def _motion(positions: Positions, note: str, end: float, shapes: Sequence[Outlin
     axis.set_aspect("equal")
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
-    step = _step(positions.times)
-    shown = _snapshots(positions.times, step)
-    time = Normalize(float(positions.times[0]), float(positions.times[-1]))
-    if positions.tips:
-        _tips(axis, positions, view, flat, shown, time)
-    if positions.bodied:
-        _paths(axis, positions, view, flat)
-        _bodies(axis, positions, flat, shown, time)
-        _outlines(axis, positions, view, shapes, shown, time)
-    _scale(axis, positions, view)
+    step = _step(motion.times)
+    shown = _snapshots(motion.times, step)
+    time = Normalize(float(motion.times[0]), float(motion.times[-1]))
+    if motion.tips:
+        _tips(axis, motion, view, flat, shown, time)
+    if motion.bodied:
+        _paths(axis, motion, view, flat)
+        _bodies(axis, motion, flat, shown, time)
+        _outlines(axis, motion, view, shapes, shown, time)
+    _scale(axis, motion, view)
     from matplotlib.cm import ScalarMappable
 
     bar = figure.colorbar(ScalarMappable(time, _TIME), ax=axis, shrink=0.75, pad=0.02, aspect=28)
-    bar.set_label(
-        labelled("$t$", time_unit(positions.system)).replace(" ", "\n", 1), rotation=0, fontsize=13, labelpad=8
-    )
+    bar.set_label(labelled("$t$", time_unit(motion.system)).replace(" ", "\n", 1), rotation=0, fontsize=13, labelpad=8)
     bar.outline.set_visible(False)
     handles, labels = axis.get_legend_handles_labels()
     if handles:
@@ -131,25 +129,23 @@ def _motion(positions: Positions, note: str, end: float, shapes: Sequence[Outlin
             ncols=min(columns, len(handles)),
             frameon=False,
             fontsize=9,
-            title=None if positions.tips else say("paths of the mass centres"),
+            title=None if motion.tips else say("paths of the mass centres"),
             title_fontsize=9,
         )
-    lines = [title_of(positions.system), *_caption(positions, step, end), note]
+    lines = [title_of(motion.system), *_caption(motion, step, end), note]
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure
 
 
-def _caption(positions: Positions, step: float, end: float) -> list[str]:
-    last, unit = float(positions.times[-1]), pretty(time_unit(positions.system))
-    say = spoken(positions.system)
+def _caption(motion: Positions, step: float, end: float) -> list[str]:
+    last, unit = float(motion.times[-1]), pretty(time_unit(motion.system))
+    say = spoken(motion.system)
     reached, whole, every = (with_unit(_rounded(x), unit) for x in (last, end, step))
     span = Message("t = 0 to [[last]] (of [[end]])", last=reached, end=whole)
     shown = [say(Message("t = 0 to [[last]]", last=reached) if last == end else span)]
-    if positions.bodied:
+    if motion.bodied:
         shown.append(say(Message("a snapshot every [[step]]", step=every)))
-    frame = (
-        [] if positions.frame == INERTIAL else [say(Message("seen in the frame '[[frame]]'", frame=positions.frame))]
-    )
+    frame = [] if motion.frame == INERTIAL else [say(Message("seen in the frame '[[frame]]'", frame=motion.frame))]
     return [", ".join(shown), *frame]
 
 
@@ -187,19 +183,17 @@ def _paths(axis: Any, positions: Positions, view: _View, flat: Any) -> None:
             axis.plot(*flat[i], color=colour, linewidth=0.9, alpha=0.85, label=label, zorder=2)
 
 
-def _bodies(axis: Any, positions: Positions, flat: Any, shown: Sequence[int], time: Normalize) -> None:
-    thin = max(0.5, 1.0 - 0.02 * len(positions.points))
+def _bodies(axis: Any, motion: Positions, flat: Any, shown: Sequence[int], time: Normalize) -> None:
+    thin = max(0.5, 1.0 - 0.02 * len(motion.points))
     for k in shown:
-        colour = _TIME(time(positions.times[k]))
-        zorder = 3 + k / len(positions.times)
-        for pairs, width, dash in ((positions.links, 2.0 * thin, "solid"), (positions.slides, 1.2, (0, (3, 1.5)))):
-            ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs if j not in positions.tips]
+        colour = _TIME(time(motion.times[k]))
+        zorder = 3 + k / len(motion.times)
+        for pairs, width, dash in ((motion.links, 2.0 * thin, "solid"), (motion.slides, 1.2, (0, (3, 1.5)))):
+            ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs if j not in motion.tips]
             axis.add_collection(LineCollection(ends, colors=[colour], linewidths=width, linestyles=dash, zorder=zorder))
-        joints = [
-            i for i, point in enumerate(positions.points) if i not in positions.centres.values() and point.kind != AXIS
-        ]
+        joints = [i for i, point in enumerate(motion.points) if i not in motion.centres.values() and point.kind != AXIS]
         axis.plot(*flat[joints, :, k].T, "o", color=colour, markersize=3.2, markerfacecolor="white", zorder=zorder)
-        for place, i in enumerate(positions.centres.values()):
+        for place, i in enumerate(motion.centres.values()):
             edge = _PATHS[place % len(_PATHS)] if k in (shown[0], shown[-1]) else colour
             size = 5 * thin
             axis.plot(*flat[i, :, k], "o", color=colour, markeredgecolor=edge, markersize=size, zorder=zorder + 0.01)

@@ -96,7 +96,7 @@ def _drawn(system: System, until: float, tradeoff: Tradeoff, target: float, mode
     finest = min((row.error for row in tradeoff.rows), default=1.0)
     if tradeoff.smallest_judged > finest / 100:
         _line(axes, tradeoff.smallest_judged, GREY, say("limit of the reference"))
-    for model in _drawable(models):
+    for model in (row for row in models if RESOLVED < row.error < WORST):
         _line(axes, model.error, OLIVE, say(Message("model [[label]]", label=model.model)))
     # Patterns of lines need some length to be told apart.
     figure.legend(loc="outside right upper", frameon=False, fontsize=9, handlelength=3.4)
@@ -106,10 +106,6 @@ def _drawn(system: System, until: float, tradeoff: Tradeoff, target: float, mode
 def _styles(methods: Iterable[str]) -> dict[str, tuple[str, str]]:
     """A colour and a marker for each method, no pair of them twice (up to 56 methods)."""
     return {name: (_COLOURS[i % len(_COLOURS)], _MARKS[i % len(_MARKS)]) for i, name in enumerate(methods)}
-
-
-def _drawable(models: Sequence[ModelError]) -> Iterable[ModelError]:
-    return (row for row in models if RESOLVED < row.error < WORST)
 
 
 def _line(axes: Axes, error: float, colour: str, text: str) -> None:

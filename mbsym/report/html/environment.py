@@ -33,11 +33,7 @@ def page(
     more, own = bundle
     style = own + "".join((folder / name).read_text(encoding="utf-8") for name in ("page.css", "pictures.css"))
     code = [(folder / name).read_text(encoding="utf-8") for name in scripts] + [more] * bool(more)
-    values |= {
-        "style": Markup(style),
-        "scripts": [Markup(text) for text in code],
-        "policy": _policy(style, code),
-    }
+    values |= {"style": Markup(style), "scripts": [Markup(text) for text in code], "policy": _policy(style, code)}
     return fragment(template, known, **values)
 
 

@@ -279,11 +279,9 @@ class Writer:
 
     @math.register
     def _(self, value: content.Points) -> str:
-        written = [point_of_table(x, y, self.names) for x, y in shown_points(value.points)]
-        half = len(written) // 2
-        return _COMMA.join(
-            written if len(written) == len(value.points) else [*written[:half], mo("\u2026"), *written[half:]]
-        )
+        text = [point_of_table(x, y, self.names) for x, y in shown_points(value.points)]
+        half = len(text) // 2
+        return _COMMA.join(text if len(text) == len(value.points) else [*text[:half], mo("\u2026"), *text[half:]])
 
     # --- blocks ---
 

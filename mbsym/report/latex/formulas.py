@@ -54,10 +54,7 @@ Measured = Callable[[Matrix], tuple[str, float]]
 
 
 def matrix(
-    value: Matrix,
-    long: frozenset[int] = frozenset(),
-    widest: float = WIDEST,
-    measured: Measured = measured_matrix,
+    value: Matrix, long: frozenset[int] = frozenset(), widest: float = WIDEST, measured: Measured = measured_matrix
 ) -> str:
     """A pmatrix, or nothing if that would be too wide or holds one of the ``long`` formulas."""
     if any(id(x) in long for row in value for x in row):

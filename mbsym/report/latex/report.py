@@ -62,9 +62,7 @@ LONG_BRACKET = 120
 
 def abbreviated(text: str) -> str:
     r"""The text with long parts of its ``\longformula`` told before they are used."""
-    letter = next(
-        (candidate for candidate in LETTERS if not re.search(re.escape(candidate) + r"(?![A-Za-z])", text)), None
-    )
+    letter = next((x for x in LETTERS if not re.search(re.escape(x) + r"(?![A-Za-z])", text)), None)
     if letter is None:
         return text
     parts = _Parts(letter)

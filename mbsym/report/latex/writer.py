@@ -548,13 +548,14 @@ _SPECIAL = {
 
 def escaped(words: str) -> str:
     """Plain text; characters that plain pdflatex cannot set become question marks."""
-    plain = "".join(_SPECIAL.get(c, c if _can_be_set(c) else "?") for c in " ".join(words.split()))
+    plain = "".join(map(spelled, " ".join(words.split())))
     return plain.replace("--", "-{}-").replace("\u2014", "---").replace("\u2013", "--")
 
 
-def _can_be_set(character: str) -> bool:
-    """Whether inputenc knows it for Latin or Cyrillic letters."""
-    return character < "\u0100" or "\u0410" <= character <= "\u044f" or character in "\u0401\u0451\u2013\u2014"
+def spelled(character: str) -> str:
+    """A character of plain text, which inputenc has to know for Latin or Cyrillic letters."""
+    known = character < "\u0100" or "\u0410" <= character <= "\u044f" or character in "\u0401\u0451\u2013\u2014"
+    return _SPECIAL.get(character, character if known else "?")
 
 
 def broken(line: str) -> str:

@@ -156,11 +156,7 @@ def letters(taken: Collection[str], count: int) -> list[str]:
 
 
 def _page(
-    system: System,
-    chart: Map,
-    page: Sequence[tuple[Picture | None, Map]],
-    told: Mapping[str, str],
-    language: Language,
+    system: System, chart: Map, page: Sequence[tuple[Picture | None, Map]], told: Mapping[str, str], language: Language
 ) -> Figure:
     small = isinstance(chart, Stack)
     names = [{k: told[mark_name(chart, plane, k)] for k in sorted(marks(plane))} for _, plane in page]

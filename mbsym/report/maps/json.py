@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from itertools import count
 from typing import Any
 
@@ -19,32 +18,42 @@ from mbsym.maps.slices import Layer, Picture, Stack
 from mbsym.model.system import System
 from mbsym.report.documents import branches
 from mbsym.report.documents import map as doc
-from mbsym.report.documents.base import written
-from mbsym.source.yaml_writer import meaning
+from mbsym.report.documents.base import file_of
 
 
 def map_json(system: System, chart: Map) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    head = {
-        "system": system.name,
-        "description_sha256": meaning(system),
-        "values": {name: str(value) for name, value in sorted(chart.values.items())},
-    }
+    values = {name: str(value) for name, value in sorted(chart.values.items())}
     if isinstance(chart, Branches):
-        return written(_branches(head, chart))
-    if isinstance(chart, EquilibriaMap):
-        return written(_equilibria(head, chart))
-    return written(
-        doc.Map.from_result(
+        return file_of(
+            branches.Branches,
+            system,
             chart,
-            **head,
-            demands=[doc.Demand.from_result(x.condition, relation=x.relation) for x in chart.admissibility.demands],
-            curves=_curves(chart.boundaries),
-            **_places(None if isinstance(chart, BoxMap | Stack) else chart),
-            pictures=[_picture(chart, picture) for picture in chart.pictures] if isinstance(chart, Stack) else UNSET,
-            slices=[_layer(chart, layer) for layer in chart.layers] if isinstance(chart, Stack) else UNSET,
-            subdivision=_boxes(chart) if isinstance(chart, BoxMap) else UNSET,
+            values=values,
+            parameter=chart.axes[0],
+            intervals=[_interval(chart, interval) for interval in chart.intervals],
+            critical_values=[_critical(chart, critical) for critical in chart.criticals],
         )
+    if isinstance(chart, EquilibriaMap):
+        return file_of(
+            branches.EquilibriaMap,
+            system,
+            chart,
+            values=values,
+            curves=[(k, p, [x.origin for x in conditions]) for k, p, conditions in _curves(chart.boundaries)],
+            regions=[_numbered(region, area) for region, (area, _) in zip(chart.regions, chart.areas, strict=True)],
+        )
+    return file_of(
+        doc.Map,
+        system,
+        chart,
+        values=values,
+        demands=[doc.Demand.from_result(x.condition, relation=x.relation) for x in chart.admissibility.demands],
+        curves=_curves(chart.boundaries),
+        **_places(None if isinstance(chart, BoxMap | Stack) else chart),
+        pictures=[_picture(chart, picture) for picture in chart.pictures] if isinstance(chart, Stack) else UNSET,
+        slices=[_layer(chart, layer) for layer in chart.layers] if isinstance(chart, Stack) else UNSET,
+        subdivision=_boxes(chart) if isinstance(chart, BoxMap) else UNSET,
     )
 
 
@@ -126,15 +135,6 @@ def _layer(stack: Stack, layer: Layer) -> doc.Slice:
     )
 
 
-def _equilibria(head: Mapping[str, Any], chart: EquilibriaMap) -> branches.EquilibriaMap:
-    return branches.EquilibriaMap.from_result(
-        chart,
-        **head,
-        curves=[(k, p, [x.origin for x in conditions]) for k, p, conditions in _curves(chart.boundaries)],
-        regions=[_numbered(region, area) for region, (area, _) in zip(chart.regions, chart.areas, strict=True)],
-    )
-
-
 def _numbered(cell: Cell, area: float) -> branches.Region:
     known = branches.PROVED if cell.certainty is Certainty.PROVED else branches.SAMPLE
     said = cell.said if isinstance(cell.said, Counted) else Counted(())
@@ -146,16 +146,6 @@ def _numbered(cell: Cell, area: float) -> branches.Region:
         count=None if cell.counted is None else said.count,
         stable=None if cell.counted is None else said.stable,
         area=area,
-    )
-
-
-def _branches(head: Mapping[str, Any], diagram: Branches) -> branches.Branches:
-    return branches.Branches.from_result(
-        diagram,
-        **head,
-        parameter=diagram.axes[0],
-        intervals=[_interval(diagram, interval) for interval in diagram.intervals],
-        critical_values=[_critical(diagram, critical) for critical in diagram.criticals],
     )
 
 

@@ -18,23 +18,12 @@ from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.language import Language
 from mbsym.report.latex.labels import prefix_of
+from mbsym.report.latex.writer import spelled
 from mbsym.report.maps.figure import lettered, mark_name, marks, page_names, panels
 from mbsym.report.maps.words import INTERRUPTED, border_words, critical_words, percent, rational_text, stem
 
 #: Longer polynomials are told by their degrees and number of terms.
 MOST_TERMS = 14
-
-_ESCAPED = {
-    "_": r"\_",
-    "#": r"\#",
-    "%": r"\%",
-    "&": r"\&",
-    "$": r"\$",
-    "{": r"\{",
-    "}": r"\}",
-    "\\": r"\textbackslash{}",
-}
-_ESCAPED |= {"<": r"\textless{}", ">": r"\textgreater{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
 
 _HEADS = {
     Of.STABILITY: "Stability of",
@@ -77,14 +66,8 @@ def _branches(system: System, branches: Branches, language: Language) -> str:
         stable = f"{language.say('of them stable')} {counted.stable}"
         stable += f", {language.say('undecided')} {counted.undecided}" if counted.undecided else ""
         numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")
-    described = [
-        (critical_cell, words)
-        for critical_cell in branches.criticals
-        if (words := language.say(critical_words(branches, critical_cell)))
-    ]
-    critical = [
-        rf"\item ${name} = {number_tex(critical_cell.sample)}$: {escaped(words)}" for critical_cell, words in described
-    ]
+    items = [(cell, words) for cell in branches.criticals if (words := language.say(critical_words(branches, cell)))]
+    critical = [rf"\item ${name} = {number_tex(cell.sample)}$: {escaped(words)}" for cell, words in items]
     lines = figure_lines(system, "branches", caption, "equilibria --vary")
     lines += listed(language.say("Numbers of equilibria:"), numbers)
     return "\n".join([*lines, *listed(language.say("Critical values:"), critical)]) + "\n"
@@ -183,4 +166,4 @@ def equation(p: Any, names: LatexNames, language: Language, file: str) -> str:
 
 def escaped(plain: str) -> str:
     """As LaTeX."""
-    return "".join(_ESCAPED.get(c, c) for c in plain)
+    return "".join(map(spelled, plain))

@@ -17,10 +17,9 @@ from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import ensemble as doc
-from mbsym.report.documents.base import written as document
+from mbsym.report.documents.base import file_of
 from mbsym.report.runs.simulation_words import laws_json
 from mbsym.report.runs.trajectory_csv import text_table, written
-from mbsym.source.yaml_writer import meaning
 
 #: So many members that ended early are named one by one in sentences.
 NAMED = 5
@@ -70,10 +69,10 @@ def ensemble_json(
     """The file's text; ``files`` are those that belong to it."""
     scenario = ensemble.members.dynamics.scenario
     spread = ensemble.statistics
-    content = doc.Ensemble.from_result(
+    return file_of(
+        doc.Ensemble,
+        scenario.system,
         ensemble,
-        system=scenario.system.name,
-        description_sha256=meaning(scenario.system),
         status="partial" if ensemble.interrupted else "whole",
         inputs=laws_json(scenario) if scenario.inputs else UNSET,
         members=ensemble.count,
@@ -97,17 +96,14 @@ def ensemble_json(
         },
         files=files,
     )
-    return document(content)
 
 
-def _variation(variation: Variation) -> doc.Varied:
-    if isinstance(variation, Grid):
-        return doc.Varied(
-            name=variation.name, kind="grid", from_=variation.low, to=variation.high, count=variation.count
-        )
-    if variation.kind == "normal":
-        return doc.Varied(name=variation.name, kind="normal", mean=variation.first, deviation=variation.second)
-    return doc.Varied(name=variation.name, kind="uniform", from_=variation.first, to=variation.second)
+def _variation(varied: Variation) -> doc.Varied:
+    if isinstance(varied, Grid):
+        return doc.Varied(name=varied.name, kind="grid", from_=varied.low, to=varied.high, count=varied.count)
+    if varied.kind == "normal":
+        return doc.Varied(name=varied.name, kind="normal", mean=varied.first, deviation=varied.second)
+    return doc.Varied(name=varied.name, kind="uniform", from_=varied.first, to=varied.second)
 
 
 def sentences(ensemble: Ensemble) -> Iterator[tuple[str, str]]:

@@ -28,12 +28,10 @@ def events_json(run: Simulation) -> dict[str, Any]:
         "events": [_event(occurrences, place, event) for place, event in enumerate(occurrences.events)],
         "stopped": _stopped(run, occurrences.ended),
     }
-    section = run.happened.section
-    if section is not None:
+    cut = run.happened.section
+    if cut is not None:
         content["section"] = doc.Section(
-            condition=section.section.condition.text,
-            axes=[axis.text for axis in section.section.axes],
-            count=len(section.times),
+            condition=cut.section.condition.text, axes=[axis.text for axis in cut.section.axes], count=len(cut.times)
         )
     return content
 

@@ -11,7 +11,7 @@ from mbsym.numerics.extremes.extremes_told import sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.trade.digits import FULL
 from mbsym.report.documents import extremes as doc
-from mbsym.report.documents.base import written
+from mbsym.report.documents.base import file_of
 from mbsym.report.runs.trajectory_csv import text_table
 
 HEADER = (
@@ -50,9 +50,10 @@ def extremes_csv(extremes: Extremes) -> str:
 def extremes_json(extremes: Extremes) -> str:
     """Everything, with the sentences; numbers that are infinite are null."""
     singular = extremes.singularities
-    whole = doc.Extremes.from_result(
+    return file_of(
+        doc.Extremes,
+        extremes.system,
         extremes,
-        system=extremes.system.name,
         sentences=sentences(extremes),
         singular=None if singular is None or not singular.how else singular,
         eigenvalues=[
@@ -64,7 +65,6 @@ def extremes_json(extremes: Extremes) -> str:
             for item in extremes.verdicts
         ],
     )
-    return written(whole)
 
 
 def tables(extremes: Extremes) -> Iterator[tuple[list[str], list[list[str]]]]:

@@ -8,9 +8,8 @@ from mbsym.expressions.message import Counted, Message, joined
 from mbsym.model.system import System
 from mbsym.numerics.orbits.floquet import Judged, Multiplier, Word
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.base import written
+from mbsym.report.documents.base import file_of
 from mbsym.report.documents.orbit import DIGITS
-from mbsym.source.yaml_writer import meaning
 
 _SAID = {
     Word.UNSTABLE: Message("unstable: a multiplier is outside the unit circle (Lyapunov)"),
@@ -33,7 +32,7 @@ _SAID = {
 
 def floquet_json(system: System, floquet: Judged) -> str:
     """The file's text."""
-    return written(doc.Floquet.from_result(floquet, system=system.name, description_sha256=meaning(system)))
+    return file_of(doc.Floquet, system, floquet)
 
 
 def sentences(floquet: Judged) -> Iterator[tuple[str, str]]:
@@ -47,12 +46,10 @@ def sentences(floquet: Judged) -> Iterator[tuple[str, str]]:
     period = floquet.period.str(15, radius=False)
     text = "[[period]] is a period of the coefficients (2 pi over [[frequency]])"
     yield Message("period"), Message(text, period=period, frequency=floquet.frequency)
-    for multiplier in floquet.multipliers:
-        where = Message(
-            "size between [[least]] and [[most]]", least=f"{multiplier.least:.12g}", most=f"{multiplier.greatest:.12g}"
-        )
-        text = Message("on the unit circle") if multiplier.on_circle else where
-        yield Message("multiplier"), joined((_shown(multiplier), text), "; ")
+    for mu in floquet.multipliers:
+        where = Message("size between [[least]] and [[most]]", least=f"{mu.least:.12g}", most=f"{mu.greatest:.12g}")
+        text = Message("on the unit circle") if mu.on_circle else where
+        yield Message("multiplier"), joined((_shown(mu), text), "; ")
     text = "enclosed in balls with proved remainders, [[steps]]"
     yield Message("how"), Message(text, steps=Counted(floquet.steps, "step"))
 

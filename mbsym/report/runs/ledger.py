@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import Message, joined, worded
-from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, SECONDS, Ledger, Measure, Saving
+from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, SECONDS, Ledger, Measure
 from mbsym.report.content import Block, Fact, Facts, Graded, Phrase, Subheading, paragraph
+from mbsym.report.documents import results as doc
 from mbsym.report.documents.base import plain
-from mbsym.report.documents.results import ledger as doc
 from mbsym.report.runs.trajectory_csv import text_table
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
@@ -107,17 +107,7 @@ def ledger_csv(ledger: Ledger) -> str:
     return text_table(COLUMNS, rows)
 
 
-def ledger_data(ledger: Ledger) -> doc.Ledger:
-    """The ledger as a part of results.json."""
-    return doc.Ledger(savings=[_saving(item) for item in ledger.savings], not_measured=list(ledger.unmeasured))
-
-
-def _saving(item: Saving) -> doc.Saving:
-    measures = [doc.Measure.from_result(measure, with_=measure.taken) for measure in item.measures]
-    return doc.Saving.from_result(item, measures=measures)
-
-
 def with_ledger(results: str, ledger: Ledger) -> str:
     """The text of ``results.json`` with the ledger in it."""
-    content = json.loads(results) | {"ledger": plain(ledger_data(ledger))}
+    content = json.loads(results) | {"ledger": plain(doc.Ledger.from_result(ledger))}
     return json.dumps(content, indent=2, sort_keys=True, ensure_ascii=False) + "\n"

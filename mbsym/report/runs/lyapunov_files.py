@@ -15,10 +15,9 @@ from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.orbits.lyapunov import Exponents, Parting
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.base import written as document
+from mbsym.report.documents.base import file_of
 from mbsym.report.figures.drawing import BLUE, GREY, pictures
 from mbsym.report.runs.trajectory_csv import written
-from mbsym.source.yaml_writer import meaning
 
 
 def lyapunov_csv(exponents: Exponents) -> str:
@@ -28,14 +27,13 @@ def lyapunov_csv(exponents: Exponents) -> str:
 
 def lyapunov_json(system: System, exponents: Exponents) -> str:
     """The file's text."""
-    content = doc.Lyapunov.from_result(
+    return file_of(
+        doc.Lyapunov,
+        system,
         exponents,
-        system=system.name,
-        description_sha256=meaning(system),
         exponents=list(zip(exponents.values, exponents.uncertainty, strict=True)),
         largest=exponents.parting.name.lower().removesuffix("_over_this_time") if len(exponents.times) else None,
     )
-    return document(content)
 
 
 def lyapunov_figure(system: System, exponents: Exponents, formats: Sequence[str]) -> dict[str, bytes]:

@@ -14,10 +14,9 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.orbits.periodic import Orbit
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.base import written as document
+from mbsym.report.documents.base import file_of
 from mbsym.report.runs.trajectory_csv import written
 from mbsym.simulation.motions import PeriodicMotion
-from mbsym.source.yaml_writer import meaning
 
 
 def orbit_csv(motion: PeriodicMotion) -> str:
@@ -29,10 +28,10 @@ def orbit_csv(motion: PeriodicMotion) -> str:
 def orbit_json(motion: PeriodicMotion) -> str:
     """The file's text."""
     orbit, system = motion.orbit, motion.scenario.system
-    content = doc.Orbit.from_result(
+    return file_of(
+        doc.Orbit,
+        system,
         orbit,
-        system=system.name,
-        description_sha256=meaning(system),
         initial=zip(orbit.names, map(float, orbit.state), strict=True),
         repeats=motion.repeats,
         turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
@@ -40,7 +39,6 @@ def orbit_json(motion: PeriodicMotion) -> str:
         multipliers=[(float(mu.real), float(mu.imag), float(abs(mu))) for mu in orbit.multipliers],
         trivial=(orbit.trivial, orbit.reasons),
     )
-    return document(content)
 
 
 def sentences(motion: PeriodicMotion) -> Iterator[tuple[str, str]]:

@@ -46,10 +46,7 @@ def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | N
         reached=doc.Reached(time=float(trajectory.times[-1]), samples=trajectory.samples, state=_last(trajectory)),
         continued=None if earlier is None else doc.Continued(from_=earlier.time, samples=len(earlier.times)),
         method=doc.MethodUsed(
-            name=traits.name.lower(),
-            title=traits.title,
-            why=chosen.why,
-            may_change=may_change(run.request),
+            name=traits.name.lower(), title=traits.title, why=chosen.why, may_change=may_change(run.request)
         ),
         arithmetic=run.arithmetic,
         tolerance=trajectory.setting.tolerance,
@@ -69,9 +66,7 @@ def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | N
         generalized_energy=UNSET
         if run.dynamics.natural
         else doc.GeneralizedEnergy.from_result(run.conservation, is_="T2 - T0 - U"),
-        invariants={
-            invariant.column: doc.Invariant.from_result(invariant.conservation) for invariant in run.invariants
-        },
+        invariants={item.column: doc.Invariant.from_result(item.conservation) for item in run.invariants},
         estimated_error=error_json(run.error),
         resting=_resting(chosen.resting),
         **events_json(run),

@@ -206,12 +206,9 @@ def error_json(estimate: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEst
 
 def inputs_line(scenario: Scenario) -> Message:
     """``F = sin(3*t); w = 0 (held, as on the unperturbed motion)``: what every input is in a run."""
-    laws = {
-        driven_input: Message("[[name]] = [[law]]", name=driven_input.name, law=text(driven_input.law))
-        for driven_input in scenario.inputs
-    }
+    laws = {signal: Message("[[name]] = [[law]]", name=signal.name, law=text(signal.law)) for signal in scenario.inputs}
     held = "[[law]] (held, as on the unperturbed motion)"
-    return joined([law if driven_input.asked else Message(held, law=law) for driven_input, law in laws.items()], "; ")
+    return joined([law if signal.asked else Message(held, law=law) for signal, law in laws.items()], "; ")
 
 
 def laws_json(scenario: Scenario) -> dict[str, str]:
@@ -259,17 +256,15 @@ def passed_over(run: Simulation, file: str) -> Iterator[Message]:
         yield Message(words, time=f"{passed.unresolved[0]:.6g}", command=command)
 
 
-def _told(run: Simulation, transient: Narrow, file: str) -> Message:
-    expression = None if transient.place is None else source_of(run.dynamics, transient.place)
+def _told(run: Simulation, change: Narrow, file: str) -> Message:
+    expression = None if change.place is None else source_of(run.dynamics, change.place)
     what = Message("a load") if expression is None else text(expression)
     if expression is not None and expression.span is not None:
         where = "[[what]] (line [[line]], column [[column]])"
         what = Message(where, what=what, line=expression.span.line, column=expression.span.column)
     words = "[[what]] changes within [[width]] at t = [[time]], and a step of [[step]] passed it: [[command]]"
-    width, time, step = f"{transient.width:.2g}", f"{transient.time:.6g}", f"{transient.step:.2g}"
-    return Message(
-        words, what=what, width=width, time=time, step=step, command=_command(run, file, transient.width / 4)
-    )
+    width, time, step = f"{change.width:.2g}", f"{change.time:.6g}", f"{change.step:.2g}"
+    return Message(words, what=what, width=width, time=time, step=step, command=_command(run, file, change.width / 4))
 
 
 def _command(run: Simulation, file: str, step: float) -> str:
@@ -319,8 +314,4 @@ def states_json(run: Simulation) -> doc.Variables | UnsetType:
     if not isinstance(run.system, InStates):
         return UNSET
     drifts = {name: float(np.max(values)) for name, values in norm_columns(run).items()}
-    return doc.Variables(
-        positions=list(run.system.positions),
-        speeds=list(run.system.own_speeds),
-        norm_drift=drifts,
-    )
+    return doc.Variables(positions=list(run.system.positions), speeds=list(run.system.own_speeds), norm_drift=drifts)

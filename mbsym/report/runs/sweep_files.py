@@ -15,9 +15,8 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import ensemble as doc
-from mbsym.report.documents.base import finite, written
+from mbsym.report.documents.base import file_of, finite
 from mbsym.report.runs.trajectory_csv import header, rows
-from mbsym.source.yaml_writer import meaning
 from mbsym.sweeps.judged import VERDICT
 from mbsym.sweeps.points import Column, Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
@@ -93,41 +92,36 @@ def sweep_json(
     """
     random = not points.grids and points.sampling == "random"
     judged = any(column.name == VERDICT.name for column in columns)
-    content = doc.Sweep(
-        system=system.name,
-        description_sha256=meaning(system),
+    return file_of(
+        doc.Sweep,
+        system,
+        totals,
         measure=measure,
         points=points.count,
         table=table,
         varied=[_variation(variation) for variation in points.variations],
         sampling=None if points.grids else points.sampling,
         seed=None if points.grids else points.seed,
-        settings=dict(settings),
+        settings=settings,
         columns=[doc.Column.from_result(column) for column in columns],
         shares=[_share(share) for share in totals.shares(random)] if judged else [],
         stable=_share(totals.stable(random)) if judged else None,
         singly=totals.singly if judged else None,
         ranges=[
             doc.Range.from_result(
-                column_range,
-                least=finite(column_range.least),
-                mean=finite(column_range.mean),
-                greatest=finite(column_range.greatest),
+                extent, least=finite(extent.least), mean=finite(extent.mean), greatest=finite(extent.greatest)
             )
-            for column_range in totals.ranges()
+            for extent in totals.ranges()
         ],
         dependence=[doc.Dependence(name=name, value=value) for name, value in totals.dependence()],
-        left_out=list(left_out),
+        left_out=left_out,
     )
-    return written(content)
 
 
-def _variation(variation: Variation) -> doc.Swept:
-    if isinstance(variation, Grid):
-        return doc.Swept(
-            name=variation.name, kind="grid", low=variation.low, high=variation.high, count=variation.count
-        )
-    return doc.Swept.from_result(variation, first=variation.first, second=variation.second)
+def _variation(varied: Variation) -> doc.Swept:
+    if isinstance(varied, Grid):
+        return doc.Swept(name=varied.name, kind="grid", low=varied.low, high=varied.high, count=varied.count)
+    return doc.Swept.from_result(varied, first=varied.first, second=varied.second)
 
 
 def _share(share: Share) -> doc.Share:
@@ -158,16 +152,12 @@ def sentences(
         if totals.singly:
             text = "[[points]] decided one by one, exactly"
             yield Message("near borders"), Message(text, points=Counted(totals.singly, "point"))
-    for column_range in totals.ranges():
-        gaps = {
-            "least": f"{column_range.least:.6g}",
-            "most": f"{column_range.greatest:.6g}",
-            "mean": f"{column_range.mean:.6g}",
-        }
+    for extent in totals.ranges():
+        gaps = {"least": f"{extent.least:.6g}", "most": f"{extent.greatest:.6g}", "mean": f"{extent.mean:.6g}"}
         text = Message("[[least]] to [[most]], mean [[mean]]", **gaps)
-        if column_range.missing:
-            text = Message("[[range]]; none at [[points]]", range=text, points=Counted(column_range.missing, "point"))
-        yield column_range.column, text
+        if extent.missing:
+            text = Message("[[range]]; none at [[points]]", range=text, points=Counted(extent.missing, "point"))
+        yield extent.column, text
     yield Message("points"), Message("[[count]] [[how]]", count=f"{totals.points:,}", how=_how(points))
     pairs = [(name, value) for name, value in totals.dependence() if abs(value) >= _WORTH_TELLING]
     if pairs and len(points.names) > 1:

@@ -14,9 +14,8 @@ from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
 from mbsym.numerics.trade.tradeoff import Measured, Study, Tradeoff
 from mbsym.report.documents import tradeoff as doc
-from mbsym.report.documents.base import written as document
+from mbsym.report.documents.base import file_of
 from mbsym.report.runs.trajectory_csv import text_table
-from mbsym.source.yaml_writer import meaning
 
 COLUMNS = (
     "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "cost", "front",
@@ -39,10 +38,10 @@ def tradeoff_csv(tradeoff: Tradeoff, time: str | None = None) -> str:
 def tradeoff_json(system: System, found: Study, sentence: str, time: float, target: float, budget: float) -> str:
     """``tradeoff.json``: the same with what was asked, and the recommendation."""
     trade = found.trade
-    content = doc.Tradeoff.from_result(
+    return file_of(
+        doc.Tradeoff,
+        system,
         trade,
-        system=system.name,
-        description_sha256=meaning(system),
         time=time,
         target=target,
         budget=budget,
@@ -50,7 +49,6 @@ def tradeoff_json(system: System, found: Study, sentence: str, time: float, targ
         recommended=trade.cheapest(target) if target >= trade.smallest_judged else None,
         sentence=sentence,
     )
-    return document(content)
 
 
 def constrained(rows: Sequence[Measured]) -> bool:

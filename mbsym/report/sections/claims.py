@@ -32,10 +32,7 @@ from mbsym.report.words.claims import ClaimLine, claim_line, counterexample, gra
 if TYPE_CHECKING:
     from mbsym.report.results import Results
 
-_REPAIRS = {
-    "added to": Said("right with this added to"),
-    "taken from": Said("right with this taken from"),
-}
+_REPAIRS = {"added to": Said("right with this added to"), "taken from": Said("right with this taken from")}
 
 
 def content(results: Results) -> Iterator[Block]:
@@ -55,11 +52,7 @@ def _told(results: Results, claims: tuple[ClaimResult, ...]) -> Iterator[Block]:
     groups = list(together(map(claim_line, claims)))
     yield Table(
         title=None,
-        columns=(
-            TableColumn(Said("place"), 2.6),
-            TableColumn(Said("claim"), 6.2),
-            TableColumn(Said("outcome"), 6.2),
-        ),
+        columns=(TableColumn(Said("place"), 2.6), TableColumn(Said("claim"), 6.2), TableColumn(Said("outcome"), 6.2)),
         rows=tuple(((lines[0].place,), (titles(lines),), _outcome(lines[0])) for lines in groups),
     )
     number = 0

@@ -24,8 +24,8 @@ from mbsym.report.content import (
     paragraph,
     say,
 )
+from mbsym.report.documents import results as doc
 from mbsym.report.documents.base import Write
-from mbsym.report.documents.results import energy as doc
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results

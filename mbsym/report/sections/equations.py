@@ -83,11 +83,9 @@ def reaction_data(reactions: Sequence[Reaction], tied: Constraints | None, write
     names = [] if tied is None else [tied.names[i].label for i in tied.independent]
     return [
         doc.Reaction.from_result(
-            reaction,
-            write,
-            per_multiplier=[(name, *both) for name, both in zip(names, reaction.per_multiplier, strict=True)],
+            item, write, per_multiplier=[(name, *both) for name, both in zip(names, item.per_multiplier, strict=True)]
         )
-        for reaction in reactions
+        for item in reactions
     ]
 
 

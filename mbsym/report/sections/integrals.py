@@ -48,9 +48,7 @@ def content(results: Results) -> Iterator[Block]:
         if item.kind == ENERGY and 2 in results.compact and 3 in results.problems:
             yield Display(Relation(Notation("T_2 - T_0 - U"), "=", CONSTANT), f"integral:{number}")
             yield paragraph(
-                Said(_ENERGY),
-                " ",
-                say("Written out there are [[count]] terms.", count=str(item.formula.terms)),
+                Said(_ENERGY), " ", say("Written out there are [[count]] terms.", count=str(item.formula.terms))
             )
             yield Folded(Said("The same, written out"), (written,))
         else:

@@ -6,22 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
-from mbsym.problems.invariant_sets import (
-    InvariantSets,
-    StationarySet,
-)
+from mbsym.problems.invariant_sets import InvariantSets, StationarySet
 from mbsym.report.content import Block, Heading, Phrase, Said, ragged
 from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import invariant_sets as doc
-from mbsym.report.words.invariant_words import (
-    closing,
-    family_title,
-    of_family,
-    of_set,
-    opening,
-    ring_of,
-    told_families,
-)
+from mbsym.report.words.invariant_words import closing, family_title, of_family, of_set, opening, ring_of, told_families
 
 if TYPE_CHECKING:
     from mbsym.formulas.formula import Formula
@@ -60,21 +49,18 @@ def formulas(invariant_sets: InvariantSets, system: System) -> Iterator[tuple[st
             yield from ((f"family {f}, set {k}: {key}", formula) for key, formula in _formulas_of_set(stationary_set))
 
 
-def _formulas_of_set(stationary_set: StationarySet) -> Iterator[tuple[str, Formula]]:
-    yield from stationary_set.solved
-    for k, formula in enumerate(stationary_set.relations, start=1):
+def _formulas_of_set(locus: StationarySet) -> Iterator[tuple[str, Formula]]:
+    yield from locus.solved
+    for k, formula in enumerate(locus.relations, start=1):
         yield f"equation {k}, zero", formula
-    for name, value in stationary_set.multipliers:
+    for name, value in locus.multipliers:
         if value is not None:
             yield f"multiplier {name}", value
-    yield from ((f"{name}'", formula) for name, formula in stationary_set.motion)
-    if stationary_set.variation is not None:
-        for word, relations in (
-            ("positive", stationary_set.variation.positive),
-            ("negative", stationary_set.variation.negative),
-        ):
+    yield from ((f"{name}'", formula) for name, formula in locus.motion)
+    if locus.variation is not None:
+        for word, relations in (("positive", locus.variation.positive), ("negative", locus.variation.negative)):
             for k, each in enumerate(relations or (), start=1):
                 yield f"second variation {word} {k}, {each.relation} 0", each.formula
-    if stationary_set.first is not None:
-        for k, each in enumerate(stationary_set.first.necessary, start=1):
+    if locus.first is not None:
+        for k, each in enumerate(locus.first.necessary, start=1):
             yield f"necessary {k}, {each.relation} 0", each.formula

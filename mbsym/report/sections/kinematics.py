@@ -21,8 +21,8 @@ from mbsym.report.content import (
     Subheading,
     Symbol,
 )
+from mbsym.report.documents import results as doc
 from mbsym.report.documents.base import Write
-from mbsym.report.documents.results import kinematics as doc
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results

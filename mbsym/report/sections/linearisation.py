@@ -146,16 +146,14 @@ def _first_order(results: Results, linearisation: Linearisation) -> Iterator[Blo
         yield Matrices(d, form.D, False, "first-order:D")
 
 
-def _subsystems(linearisation: Linearisation) -> Iterator[Block]:
+def _subsystems(linear: Linearisation) -> Iterator[Block]:
     """What problem 6 decides about, in its time and notation."""
-    several = len(linearisation.subsystems) > 1
+    several = len(linear.subsystems) > 1
     if several:
-        yield paragraph(
-            say("The equations split into subsystems: [[count]].", count=str(len(linearisation.subsystems))),
-        )
-    if linearisation.time_scale is not None:
-        yield paragraph(say(r"Derivatives are with respect to $\tau = [[scale]]\, t$.", scale=linearisation.time_scale))
-    for k, part in enumerate(linearisation.subsystems, start=1):
+        yield paragraph(say("The equations split into subsystems: [[count]].", count=str(len(linear.subsystems))))
+    if linear.time_scale is not None:
+        yield paragraph(say(r"Derivatives are with respect to $\tau = [[scale]]\, t$.", scale=linear.time_scale))
+    for k, part in enumerate(linear.subsystems, start=1):
         index, key = str(k) if several else "", f"subsystem:{k}"
         present = [x for x in _FIVE if x[0] == "M" or not getattr(part, x[0]).is_zero]
         yield Display(_equation(part, index, present), key)

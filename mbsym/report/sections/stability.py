@@ -125,15 +125,11 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
     """Conditions that the list already holds, or holds reversed, are named by their labels there."""
 
     def named(item: Statement) -> doc.Listed | doc.Statement:
-        reference = shown.reference(item)
-        return (
-            _statement(item) if reference is None else doc.Listed(listed=reference.under, relation=reference.relation)
-        )
+        label = shown.reference(item)
+        return _statement(item) if label is None else doc.Listed(listed=label.under, relation=label.relation)
 
     return doc.Case.from_result(
-        case,
-        all_of=[named(item) for item in case.all_of],
-        any_of=[named(item) for item in case.any_of],
+        case, all_of=[named(item) for item in case.all_of], any_of=[named(item) for item in case.any_of]
     )
 
 
@@ -213,14 +209,12 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
             factor = Polynomial(tuple(powers), variable, multiplicity)
             yield Display(Relation(k, ":", factor), f"factor:{number}:{k}")
     seen, labels = _Keyed(number), label_meanings(part.ring, theory.requirements)
-    wanted_statements = list(statements(part.ring, theory.requirements, True, labels))
+    needed = list(statements(part.ring, theory.requirements, True, labels))
     if theory.verdict.stable:  # this method leaves open what is decided otherwise
-        wanted_statements = [
-            replace(x, place=Place.NECESSARY) if x.place is Place.METHOD else x for x in wanted_statements
-        ]
-    if wanted_statements:
+        needed = [replace(x, place=Place.NECESSARY) if x.place is Place.METHOD else x for x in needed]
+    if needed:
         yield paragraph(Said("Conditions"), " (", worded(theory.wanted), "):")
-        yield from _conditions(wanted_statements, seen)
+        yield from _conditions(needed, seen)
     first = True
     for case in cases(part.ring, theory.cases, labels, theory.uncovered):
         if case.conditional:
@@ -250,12 +244,8 @@ def _verdict_told(conclusion: Verdict) -> tuple[Inline, ...]:
 def _without_numbers(results: Results) -> list[str]:
     """The parameters that have no value, where others have one."""
     system, motion = results.system, results.analysis.optional("equilibrium")
-    known = {relation.name for relation in system.relations} | {
-        name for name, _ in (() if motion is None else motion.solved)
-    }
-    lacking = [
-        parameter.name for parameter in system.parameters if parameter.value is None and parameter.name not in known
-    ]
+    known = {item.name for item in system.relations} | {name for name, _ in (() if motion is None else motion.solved)}
+    lacking = [item.name for item in system.parameters if item.value is None and item.name not in known]
     used = {name for x in expressions(system) for name in names(x)} if lacking else set()
     return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []
 

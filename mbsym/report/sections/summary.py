@@ -146,9 +146,9 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield Fact(Said("Self-check"), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),))
 
 
-def _size(system: System, solutions: dict[int, Any]) -> Fact:
+def _size(system: System, solved: dict[int, Any]) -> Fact:
     """Coordinates, constraints, what is left of freedom, cyclic coordinates, inputs."""
-    tied: Constraints | None = solutions[3].constraints if 3 in solutions else None
+    tied: Constraints | None = solved[3].constraints if 3 in solved else None
     said: list[Inline] = [named(system.coordinates)]
     if len(system.coordinates) > 1:
         said.insert(0, f"{len(system.coordinates)}: ")
@@ -163,11 +163,7 @@ def _size(system: System, solutions: dict[int, Any]) -> Fact:
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
         if tied.demanded.satisfied is False:
             said += [" ", Said("(at values of the parameters that satisfy further relations; the given ones do not)")]
-    cyclic = (
-        []
-        if 2 not in solutions or system.constraints
-        else [x for x in solutions[2].cyclic if not is_felt(x, solutions)]
-    )
+    cyclic = [] if 2 not in solved or system.constraints else [x for x in solved[2].cyclic if not is_felt(x, solved)]
     cyclic = [name for name in cyclic if name in system.coordinates]  # the others are functions of time
     if cyclic:
         said += ["; ", Said("$L$ does not contain"), " ", named(cyclic)]
@@ -269,9 +265,8 @@ def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
         yield from lines[1:]
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
     reasons = (cause for part in stability.subsystems for cause in part.theory.verdict.reasons)
-    for reason in dict.fromkeys(
-        cause for cause in reasons if cause.code is Because.OTHER_ANGLES
-    ):  # the names mean others
+    # The names mean others.
+    for reason in dict.fromkeys(cause for cause in reasons if cause.code is Because.OTHER_ANGLES):
         yield worded(sentence(reason))
 
 
@@ -393,11 +388,7 @@ def _counted(case: CaseStatement) -> Inline:
 def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition], before: list[_Condition]) -> Inline:
     """The verdict with its conditions; ``before``: those of the case in front of it."""
     verdict = Phrase(where(case.word, case.theorems))
-    if (
-        len(either) > 1
-        and not every
-        and [inequality.parts for inequality, _ in either] == [_reversed(inequality) for inequality, _ in before]
-    ):
+    if len(either) > 1 and not every and [item.parts for item, _ in either] == [_reversed(item) for item, _ in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
     phrase = joined((Phrase((relation, *number)) for relation, number in every), ", ")
@@ -421,14 +412,12 @@ def _condition(item: Statement, long: bool, seen: list[Formula], keys: Keys) -> 
     return inequality, _numbered(left, relation, keys)
 
 
-def _numbered(left: Formula, relation: Math | str, keys: Keys) -> tuple[Numbered, ...]:
+def _numbered(left: Formula, sign: Math | str, keys: Keys) -> tuple[Numbered, ...]:
     """Where the condition stands in problem 6, a positive number times it, or its opposite reversed."""
     for item, key in keys:
         assert item.formula is not None
         ratio = rational_ratio(left.polynomial, item.formula.polynomial)
-        if ratio is not None and relation == (
-            item.relation if ratio > 0 else OPPOSITE.get(item.relation, item.relation)
-        ):
+        if ratio is not None and sign == (item.relation if ratio > 0 else OPPOSITE.get(item.relation, item.relation)):
             return (Numbered(key),)
     return ()
 

@@ -96,13 +96,8 @@ def _variables(system: System) -> Iterator[Block]:
         yield paragraph(Said("Prescribed"), ": ", law, *_unit(system, item.name), *_meaning(item.meaning), ".")
     if system.inputs:
         parts: list[Inline] = []
-        for k, system_input in enumerate(system.inputs):
-            parts += [
-                *(["; "] if k else []),
-                Name(system_input.name),
-                *_unit(system, system_input.name),
-                *_meaning(system_input.meaning),
-            ]
+        for k, signal in enumerate(system.inputs):
+            parts += [*(["; "] if k else []), Name(signal.name), *_unit(system, signal.name), *_meaning(signal.meaning)]
         yield paragraph(Said("Inputs, functions of time that are chosen later"), ": ", *parts, ".")
     if system.outputs:
         outputs = tuple(Relation(Name(output.name), "=", output.value) for output in system.outputs)
@@ -159,10 +154,9 @@ def _body(body: Body, number: int, accepted: dict[str, str]) -> Iterator[Inline]
     yield from ("; ", Said("connection point"), " ", vector(body.connection_point))
     yield from ("; ", Said("mass centre"), " ", vector(body.mass_centre), "; ", Said("mass"), " ", body.mass)
     if body.inertia is not None:
-        about = {
-            "mass centre": Said("inertia about the mass centre"),
-            "joint": Said("inertia about the joint"),
-        }[body.inertia.about]
+        about = {"mass centre": Said("inertia about the mass centre"), "joint": Said("inertia about the joint")}[
+            body.inertia.about
+        ]
         yield from ("; ", about, " ", Tensor(body.inertia.tensor))
         if body.name in accepted:
             yield from (", ", Said("accepted as given (identified values)"))
@@ -247,9 +241,5 @@ def _values(system: System) -> Iterator[Block]:
 def accepted_inertias(system: System) -> dict[str, str]:
     """For each body whose inertia is accepted, the inequality that it breaks, as far as the given numbers tell."""
     values = known_values(system)
-    accepted = [body for body in system.bodies if _is_accepted(body)]
+    accepted = [body for body in system.bodies if body.inertia is not None and body.inertia.accepted]
     return {body.name: body_violation(body, values) or "" for body in accepted}
-
-
-def _is_accepted(body: Body) -> bool:
-    return body.inertia is not None and body.inertia.accepted

@@ -14,7 +14,7 @@ from mbsym.problems.normal_forms.along import Along, Special
 from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.documents import nonlinear as doc
-from mbsym.report.documents.base import written
+from mbsym.report.documents.base import file_of
 from mbsym.report.sections.normal_forms import enclosure
 from mbsym.report.words.normal_form_words import REASONS, decimal
 
@@ -142,9 +142,10 @@ def _polynomial(coefficients: Sequence[int], name: str) -> str:
 
 def as_text(system: System, interval: Along) -> str:
     """JSON: ``between`` has one entry more than ``values``."""
-    whole = doc.Nonlinear.from_result(
+    return file_of(
+        doc.Nonlinear,
+        system,
         interval,
-        system=system.name,
         parameter=interval.name,
         low=str(interval.low),
         high=str(interval.high),
@@ -162,7 +163,6 @@ def as_text(system: System, interval: Along) -> str:
         ],
         between=[doc.Between.from_result(gap.judged, enclosure, sample=str(gap.sample)) for gap in interval.between],
     )
-    return written(whole)
 
 
 def _of_problem_6(verdict: Verdict | None) -> dict[str, Any]:

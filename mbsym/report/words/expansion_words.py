@@ -207,8 +207,7 @@ def sentences(expansion: Expansion) -> Iterator[Said]:
         yield say("It is real where [[conditions]].", conditions=_told(expansion, expansion.real))
     if expansion.provided:
         yield say(
-            "It holds where these are not zero, which were divided by: [[provided]].",
-            provided=expansion.provided,
+            "It holds where these are not zero, which were divided by: [[provided]].", provided=expansion.provided
         )
     if manifold.steady is None:
         yield say("Nothing is said of stability: [[missing]].", missing=worded(expansion.missing))

@@ -101,18 +101,14 @@ def sarif(findings: Sequence[Finding], version: str) -> str:
     return json.dumps(log, indent=2, ensure_ascii=False) + "\n"
 
 
-def _result(finding: Finding, rule: int) -> dict[str, object]:
-    place: dict[str, object] = {"artifactLocation": {"uri": quote(finding.path, errors="surrogateescape")}}
-    if finding.line is not None and finding.column is not None:
-        place["region"] = {
-            "startLine": finding.line,
-            "startColumn": finding.column,
-            "endColumn": finding.column + finding.length,
-        }
+def _result(item: Finding, rule: int) -> dict[str, object]:
+    place: dict[str, object] = {"artifactLocation": {"uri": quote(item.path, errors="surrogateescape")}}
+    if item.line is not None and item.column is not None:
+        place["region"] = {"startLine": item.line, "startColumn": item.column, "endColumn": item.column + item.length}
     return {
-        "ruleId": finding.code,
+        "ruleId": item.code,
         "ruleIndex": rule,
-        "level": finding.severity,
-        "message": {"text": finding.text},
+        "level": item.severity,
+        "message": {"text": item.text},
         "locations": [{"physicalLocation": place}],
     }

@@ -21,19 +21,7 @@ from mbsym.problems.invariant_sets import (
     StationarySet,
 )
 from mbsym.problems.invariant_sets import Relation as Sign
-from mbsym.report.content import (
-    Gaps,
-    Math,
-    Name,
-    Notation,
-    Polynomial,
-    Relation,
-    Said,
-    compared,
-    joined,
-    named,
-    say,
-)
+from mbsym.report.content import Gaps, Math, Name, Notation, Polynomial, Relation, Said, compared, joined, named, say
 
 
 def ring_of(invariant_sets: InvariantSets) -> Ring | None:

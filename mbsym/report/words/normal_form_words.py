@@ -156,9 +156,7 @@ def _judged(normal_form: Judged, whole: NormalForms) -> Iterator[Said]:
         if normal_form.theorem is Theorem.EQUAL and normal_form.coefficient is not None:
             text = "In Sokolskii's normal form of equal frequencies $\\delta A = [[value]]$."
             yield say(text, value=_number(normal_form.coefficient))
-        absent = normal_form.theorem is Theorem.ARNOLD_MOSER and any(
-            exact_resonance.order <= 4 for exact_resonance in normal_form.resonances
-        )
+        absent = normal_form.theorem is Theorem.ARNOLD_MOSER and any(item.order <= 4 for item in normal_form.resonances)
         yield Said(ABSENT if absent else THEOREMS[normal_form.theorem], _gaps(normal_form))
     if normal_form.why in REASONS and normal_form.outcome is Outcome.UNDECIDED:
         yield Said(LINEAR if whole.linear_at_values else REASONS[normal_form.why])
@@ -167,16 +165,12 @@ def _judged(normal_form: Judged, whole: NormalForms) -> Iterator[Said]:
         yield Said("That is no matter: problem 6 has decided already.")
 
 
-def _gaps(normal_form: Judged) -> Gaps:
+def _gaps(form: Judged) -> Gaps:
     """What the sentence of a theorem names."""
-    text = THEOREMS[normal_form.theorem]
-    gaps: Gaps = {"word": worded(normal_form.outcome.value)} if "[[word]]" in text else {}
+    text = THEOREMS[form.theorem]
+    gaps: Gaps = {"word": worded(form.outcome.value)} if "[[word]]" in text else {}
     if "[[degree]]" in text:
-        gaps |= {
-            "name": named((normal_form.along,)),
-            "degree": str(normal_form.degree),
-            "a": _number(normal_form.coefficient),
-        }
+        gaps |= {"name": named((form.along,)), "degree": str(form.degree), "a": _number(form.coefficient)}
     return gaps
 
 

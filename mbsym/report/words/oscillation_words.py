@@ -177,10 +177,7 @@ def denominators(solution: Oscillating, equations: Iterable[Relation]) -> Defini
     """What the letters in the equations stand for."""
     tower, ring = solution.oscillation.tower, solution.told_ring
     parts = [
-        x
-        for equation in equations
-        for part in equation.parts
-        for x in (part.items if isinstance(part, Listed) else (part,))
+        x for row in equations for part in row.parts for x in (part.items if isinstance(part, Listed) else (part,))
     ]
     formulas = [x.polynomial for x in parts if isinstance(x, Formula) and x.ring is ring]
     held = {ring.generators[k].name for k in ring.held(formulas)}
@@ -210,48 +207,44 @@ def drifting(solution: Oscillating) -> Iterator[Relation]:
 
 def sentences(solution: Oscillating) -> Iterator[Said]:
     """What kind of solution it is, what was checked and where it holds."""
-    oscillation, values = solution.oscillation, _values(solution)
-    least = [residual for residual in oscillation.residuals if residual is not None]
-    if oscillation.kind is Amplitude.FREE:
-        yield say(_FREE, **values, amplitude=solution.formula(oscillation.amplitude), sine=_wave(solution, False))
+    series, values = solution.oscillation, _values(solution)
+    least = [residual for residual in series.residuals if residual is not None]
+    if series.kind is Amplitude.FREE:
+        yield say(_FREE, **values, amplitude=solution.formula(series.amplitude), sine=_wave(solution, False))
         if least or solution.taylor:  # else it is a solution
             yield Said(_FORMAL)
     else:
         yield say(_DETERMINED, **values, value=_wave(solution, True))
         if not solution.real_amplitude:
-            square = solution.formula(oscillation.amplitude * oscillation.amplitude)
+            square = solution.formula(series.amplitude * series.amplitude)
             yield say(_REAL_AMPLITUDE, condition=Relation(square, ">", 0))
-        if oscillation.other_amplitudes is not None:
-            yield say(_OTHER_AMPLITUDES, condition=Relation(solution.formula(oscillation.other_amplitudes), "=", 0))
-    if oscillation.exponent is not None:
-        power, x = oscillation.exponent
+        if series.other_amplitudes is not None:
+            yield say(_OTHER_AMPLITUDES, condition=Relation(solution.formula(series.other_amplitudes), "=", 0))
+    if series.exponent is not None:
+        power, x = series.exponent
         yield say(_EXPONENT[solution.attracts], **values, exponent=solution.formula(x), power=str(power))
-    if oscillation.constants:
-        names = tuple(solution.formula(x) for _, x in oscillation.constants)
-        yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in oscillation.constants))
-    left = values | {"left": str(min(least, default="")), "next": str(oscillation.order + 1)}
+    if series.constants:
+        names = tuple(solution.formula(x) for _, x in series.constants)
+        yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in series.constants))
+    left = values | {"left": str(min(least, default="")), "next": str(series.order + 1)}
     if solution.taylor:
-        yield say(_TAYLOR, degree=str(oscillation.order + 1))
+        yield say(_TAYLOR, degree=str(series.order + 1))
         yield Said(_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR, left)
     else:
         yield Said(_LEFT if least else _NOTHING, left)
     if not solution.real:
-        rooted = any(d > 0 for d in oscillation.frequency.top.degrees()[: -len(oscillation.tower.parameters)])
-        real = Relation(solution.formula(oscillation.frequency * oscillation.frequency), ">", 0)
-        nonzero = Relation(solution.formula(oscillation.frequency), "!=", 0)
+        rooted = any(d > 0 for d in series.frequency.top.degrees()[: -len(series.tower.parameters)])
+        real = Relation(solution.formula(series.frequency * series.frequency), ">", 0)
+        nonzero = Relation(solution.formula(series.frequency), "!=", 0)
         yield say(_REAL, **values, condition=real) if rooted else say(_NONZERO, **values, condition=nonzero)
     for divisor in solution.resonances:
         zeros = (Relation(numerator(solution, x), "=", 0) for x in divisor.parts)
         gaps: Gaps = {"harmonic": str(divisor.harmonic), "order": str(divisor.order), "names": named(divisor.variables)}
         gaps |= dict(zip(("condition", "other"), zeros, strict=False))
         yield Said(_RESONANCE if divisor.damping is None else _BOTH, gaps)
-    for group, other in oscillation.others:
+    for group, other in series.others:
         yield say(_OTHERS, names=named(group), square=solution.formula(other))
-    for sentence, groups in (
-        (_DAMPED, oscillation.damped),
-        (_ZERO, oscillation.with_zero),
-        (_NOT_KNOWN, oscillation.not_known),
-    ):
+    for sentence, groups in ((_DAMPED, series.damped), (_ZERO, series.with_zero), (_NOT_KNOWN, series.not_known)):
         for group in groups:
             yield Said(sentence, values | {"names": named(group)})
 

@@ -185,18 +185,18 @@ def as_json(context: Asked, request: Request, derived: Listed | Branches) -> str
     from mbsym.expressions.tree import text
     from mbsym.model.quantities import units_by_name
     from mbsym.report.documents import equilibria as doc
-    from mbsym.report.documents.base import written
+    from mbsym.report.documents.base import file_of
 
     assert isinstance(derived, Listed)
     values = _numbers(context.system, request)
-    whole = doc.Equilibria.from_result(
+    return file_of(
+        doc.Equilibria,
+        context.system,
         derived.equilibria,
-        system=context.system.name,
         units=units_by_name(context.system) or UNSET,
         values={name: x if isinstance(x, Fraction) else text(x) for name, x in values.items()},
         permanent_rotations=derived.permanent,
     )
-    return written(whole)
 
 
 def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:

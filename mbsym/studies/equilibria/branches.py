@@ -59,11 +59,9 @@ def _lines(branches: Branches) -> Iterator[Block]:
         column(Message("what happens"), fold=True),
     )
     yield aligned(columns, rows(branches))
-    for critical in branches.criticals:
-        if (polynomial := _minimal(critical.sample)) and critical_words(branches, critical):
-            message = Message(
-                "[[value]] is a root of [[polynomial]]", value=value(critical.sample), polynomial=polynomial
-            )
+    for cell in branches.criticals:
+        if (polynomial := _minimal(cell.sample)) and critical_words(branches, cell):
+            message = Message("[[value]] is a root of [[polynomial]]", value=value(cell.sample), polynomial=polynomial)
             yield paragraph(message)
     for remark in branches.remarks:
         yield paragraph(remark_words(remark))

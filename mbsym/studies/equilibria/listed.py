@@ -17,17 +17,7 @@ from mbsym.problems.relative_equilibria.equilibria import (
 )
 from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations
 from mbsym.problems.stability.words import Word
-from mbsym.report.content import (
-    Block,
-    Graded,
-    Inline,
-    Strong,
-    Subheading,
-    Table,
-    aligned,
-    column,
-    paragraph,
-)
+from mbsym.report.content import Block, Graded, Inline, Strong, Subheading, Table, aligned, column, paragraph
 from mbsym.report.unit_text import labelled, pretty
 
 #: Longer equations of a family are only counted.

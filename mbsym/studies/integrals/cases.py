@@ -67,14 +67,10 @@ def cases_lines(there: Setting, cases: Cases) -> Iterator[str]:
         count=cases.families,
     )
     if cases.left:
-        yield Message(
-            "Families beyond the budget (--budget): [[count]]; nothing is known of them.",
-            count=cases.left,
-        )
+        yield Message("Families beyond the budget (--budget): [[count]]; nothing is known of them.", count=cases.left)
     if cases.unread:
         yield Message(
-            "Families in which the rank also drops under conditions that were not found: [[count]].",
-            count=cases.unread,
+            "Families in which the rank also drops under conditions that were not found: [[count]].", count=cases.unread
         )
 
 

@@ -24,19 +24,15 @@ def other_lines(there: Setting, other_levels: OtherLevels | None) -> Iterator[st
         yield Message("There is no integral in the list whose values could be looked at.")
 
 
-def _of(there: Setting, other_levels: OtherLevels, other_level: OtherLevel) -> Iterator[str]:
-    that = Message(
-        "the integral of weight [[weight]] ([[name]])",
-        weight=other_level.level.weight,
-        name=title(other_level.level),
-    )
-    power = other_level.power
+def _of(there: Setting, other_levels: OtherLevels, other: OtherLevel) -> Iterator[str]:
+    that = Message("the integral of weight [[weight]] ([[name]])", weight=other.level.weight, name=title(other.level))
+    power = other.power
     value = that if power == 1 else Message("the power [[power]] of [[integral]]", power=power, integral=that)
     vectors = bool(there.field.relations) and (not other_levels.fixed or other_levels.weights is not None)
-    if not other_level.looked:
+    if not other.looked:
         yield Message("where [[integral]] is not zero there may be others: not found within the budget.", integral=that)
         return
-    for at in other_level.values:
+    for at in other.values:
         for weight, f in at.integrals:
             yield Message(
                 "where [[integral]] is [[value]], one of weight [[weight]]: [[formula]]",
@@ -47,20 +43,20 @@ def _of(there: Setting, other_levels: OtherLevels, other_level: OtherLevel) -> I
             )
         if not at.complete:
             yield Message("  where it is [[value]] there may be others: not found within the budget", value=at.value)
-    for number in other_level.undecided:
+    for number in other.undecided:
         text = "whether there are others where [[integral]] is [[value]] is undecided"
         yield Message(text, integral=value, value=number)
-    for p in other_level.irrational:
+    for p in other.irrational:
         text = "undecided where [[integral]] is a zero c of [[polynomial]]"
         yield Message(text, integral=value, polynomial=str(p).replace("x", "c"))
-    if not other_level.complete:
+    if not other.complete:
         yield Message(
             "where [[integral]] is not zero there may be others at almost all of its values: those are integrals that "
             "hold everywhere, of higher weight or not found, with this value put in.",
             integral=that,
         )
         return
-    if other_level.drops:
+    if other.drops:
         text = "where [[integral]] has single values, other than zero, there may be others: put in numbers with --set."
         yield Message(text, integral=that)
         return
@@ -74,11 +70,11 @@ def _of(there: Setting, other_levels: OtherLevels, other_level: OtherLevel) -> I
         "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
         "[[degree]][[almost]] ([[how]][[length]])."
     )
-    if not other_level.by_rank:
+    if not other.by_rank:
         known["how"] = Message("proved")
     elif there.field.parameters:
         known["how"] = Message("verified at random parameters modulo a prime")
-    elif other_level.whole:
+    elif other.whole:
         known["how"] = BUT_FOR_ALGEBRAIC
     else:
         known["integral"] = value

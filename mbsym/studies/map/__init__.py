@@ -111,9 +111,7 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
         return None, (Unfit("--locate", "unreadable", Message("[[file]] is no text in UTF-8", file=name)),)
     points, wrong = read_points(text, axes)
     hint = Message("the columns [[names]] hold rational or decimal numbers", names=", ".join(axes))
-    complaints = [
-        Unfit(f"--locate {name}:{mistake.line}", "bad-point", mistake.message, hint) for mistake in wrong[:MOST_TOLD]
-    ]
+    complaints = [Unfit(f"--locate {name}:{item.line}", "bad-point", item.message, hint) for item in wrong[:MOST_TOLD]]
     if len(wrong) > MOST_TOLD:
         complaints.append(
             Unfit(

@@ -76,18 +76,16 @@ def _doubts(chart: Map) -> Iterator[str]:
 
 
 def _findings(chart: Map, at: str) -> Iterator[str]:
-    for finding in chart.check.findings if chart.check is not None else ():
+    for flaw in chart.check.findings if chart.check is not None else ():
         what = Message("the whole")
-        if finding.region is not None:
-            what = Message(
-                "box [[number]]" if isinstance(chart, BoxMap) else "region [[number]]", number=finding.region
-            )
-        elif finding.arc is not None:
-            what = Message("arc [[number]]", number=finding.arc)
-        elif finding.corner is not None:
-            what = Message("corner [[number]]", number=finding.corner)
+        if flaw.region is not None:
+            what = Message("box [[number]]" if isinstance(chart, BoxMap) else "region [[number]]", number=flaw.region)
+        elif flaw.arc is not None:
+            what = Message("arc [[number]]", number=flaw.arc)
+        elif flaw.corner is not None:
+            what = Message("corner [[number]]", number=flaw.corner)
         text = "withdrawn, as the map's own check fails in [[what]]: [[mistake]]"
-        message = Message(text, what=what, mistake=finding.mistake)
+        message = Message(text, what=what, mistake=flaw.mistake)
         yield joined((f"{at}:", message)) if at else message
 
 
@@ -152,9 +150,7 @@ def _table(chart: Map) -> Table:
 
 def _pictures(stack: Stack) -> Table:
     heads = (stack.axis.name, Message("shown at"), Message("what is seen, by area"))
-    return aligned(
-        (column(name, fold=True) for name in heads), [_picture(stack, picture) for picture in stack.pictures]
-    )
+    return aligned((column(name, fold=True) for name in heads), [_picture(stack, page) for page in stack.pictures])
 
 
 def _picture(stack: Stack, picture: Picture) -> tuple[str, str, str]:
@@ -224,12 +220,8 @@ def _of_cells(chart: Map) -> list[str]:
                 "curves at which no "
                 "verdict changes"
             )
-        regions, arcs, corners_ = (len(x) for x in (chart.regions, chart.arcs, chart.corners))
-        gaps = {
-            "regions": Counted(regions, "region"),
-            "arcs": Counted(arcs, "arc"),
-            "corners": Counted(corners_, "corner"),
-        }
+        gaps = {"regions": Counted(len(chart.regions), "region"), "arcs": Counted(len(chart.arcs), "arc")}
+        gaps["corners"] = Counted(len(chart.corners), "corner")
         sentences = [Message(text, **gaps)]
     origins = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
     if all(condition.origin in origins for conditions in chart.boundaries.conditions for condition in conditions):
@@ -245,9 +237,9 @@ def _of_cells(chart: Map) -> list[str]:
 
 
 def _of_boxes(chart: BoxMap) -> list[str]:
-    sentences: list[str] = []
+    said: list[str] = []
     if chart.because:
-        sentences.append(Message("no exact regions: [[because]]; boxes instead", because=chart.because))
+        said.append(Message("no exact regions: [[because]]; boxes instead", because=chart.because))
     if chart.method is Method.BOUNDARIES:
         text = "what is said of a box holds at all of its points: no condition is an equality in it"
     else:
@@ -256,14 +248,11 @@ def _of_boxes(chart: BoxMap) -> list[str]:
             "matrices; these may say "
             "less than is true"
         )
-    sentences.append(Message(text))
+    said.append(Message(text))
     if chart.subdivision.end is End.BUDGET:
         text = "[[boxes]], as many as are made: smaller ones were not tried"
-        sentences.append(Message(text, boxes=Counted(len(chart.regions), "box", "boxes")))
-    return [
-        *sentences,
-        Message("white, nothing proved: [[share]] of the area", share=share(float(chart.subdivision.white))),
-    ]
+        said.append(Message(text, boxes=Counted(len(chart.regions), "box", "boxes")))
+    return [*said, Message("white, nothing proved: [[share]] of the area", share=share(float(chart.subdivision.white)))]
 
 
 def _of_equilibria(chart: EquilibriaMap, system: System | None) -> list[str]:

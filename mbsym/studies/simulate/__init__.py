@@ -121,8 +121,7 @@ class Request:
     _: KW_ONLY
     values: Values = field(default_factory=dict)
     samples: Annotated[
-        int | None,
-        Whole("N", "Rows of the table.", usual="2001, more for fast motion", least=2, most=10**18, why=ENDS),
+        int | None, Whole("N", "Rows of the table.", usual="2001, more for fast motion", least=2, most=10**18, why=ENDS)
     ] = None
     every: Annotated[float | None, Number("DT", "A row every DT instead.")] = None
     method: Annotated[
@@ -145,8 +144,7 @@ class Request:
     ] = None
     whole: Annotated[bool, Flag(None, WHOLE)] = False
     certify: Annotated[
-        float | None,
-        Number("[WIDTH]", CERTIFY, usual=USUAL_WIDTH, least=NARROWEST, most=WIDEST, alone=USUAL_WIDTH),
+        float | None, Number("[WIDTH]", CERTIFY, usual=USUAL_WIDTH, least=NARROWEST, most=WIDEST, alone=USUAL_WIDTH)
     ] = None
     certify_seconds: Annotated[
         float | None, Number("S", SECONDS, least=1e-3, most=1e9, usual=f"counted work, worth about {WORK:g} s")
@@ -171,8 +169,7 @@ class Request:
         ),
     ] = DECLARED  # fmt: skip
     accuracy: Annotated[
-        float | Mapping[str, float] | None,
-        Errors("X", ACCURACY, names=_quantities, least=LEAST_ERROR, most=MOST_ERROR),
+        float | Mapping[str, float] | None, Errors("X", ACCURACY, names=_quantities, least=LEAST_ERROR, most=MOST_ERROR)
     ] = None
 
 

@@ -167,11 +167,9 @@ def _bodies(run: Simulation) -> Iterator[BodyMotions]:
     from mbsym.numerics.between import accelerations
     from mbsym.numerics.body_motion import followed_bodies
 
-    trajectory, motions = run.trajectory, followed_bodies(run.scenario)
-    own = [(trajectory.times, trajectory.states)]
-    for times, states in (
-        own if trajectory.table is None else ((rows[0], rows[1:]) for rows, _ in trajectory.table.blocks())
-    ):
+    path, motions = run.trajectory, followed_bodies(run.scenario)
+    own = [(path.times, path.states)]
+    for times, states in own if path.table is None else ((rows[0], rows[1:]) for rows, _ in path.table.blocks()):
         yield motions(times, states, accelerations(run.dynamics, times, states))
 
 

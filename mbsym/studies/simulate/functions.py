@@ -83,9 +83,7 @@ def ensemble(
     system = moving_system(source)
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance, step)
-    spread = Spread(
-        request, [variation(name, distribution) for name, distribution in vary.items()], members, seed, sampling
-    )
+    spread = Spread(request, [variation(name, law) for name, law in vary.items()], members, seed, sampling)
     return simulate_many(scenario(system, read, declared=True), spread, read, threads)
 
 

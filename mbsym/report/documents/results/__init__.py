@@ -9,14 +9,10 @@ from msgspec import UNSET, Meta, UnsetType, field
 from mbsym.algebra.failures import Limit, Severity
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.problems import NUMBERS
-from mbsym.report.documents.base import ASIDE, Format, From, Part, Version, told_apart_by, version, words
+from mbsym.report.documents.base import ASIDE, BY_COORDINATE, Format, From, Part, Version, told_apart_by, version, words
 from mbsym.report.documents.parts import Formula
-from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
 from mbsym.report.documents.results.claims import Claim
-from mbsym.report.documents.results.energy import Energy
 from mbsym.report.documents.results.equations import Equations, Reaction
-from mbsym.report.documents.results.kinematics import Kinematics
-from mbsym.report.documents.results.ledger import Ledger
 from mbsym.report.documents.results.linearisation import FirstOrder, Linearisation, StateSpace
 from mbsym.report.documents.results.stabilisation import Stabilisation
 from mbsym.report.documents.results.stability import Stability
@@ -119,6 +115,103 @@ class Parameter(Part, frozen=True):
     )
 
 
+class Body(Part, frozen=True):
+    """a body; components in its own axes"""
+
+    name: Annotated[str, "its name"]
+    rotation: Annotated[list[list[Formula]], "direction cosines, axes of the body in the rows"]
+    angular_velocity: Annotated[list[Formula], "angular velocity"]
+    velocity_origin: Annotated[list[Formula], "velocity of its joint"]
+    velocity_mass_centre: Annotated[list[Formula], "velocity of its mass centre"]
+
+
+class Kinematics(Part, frozen=True):
+    """problem 1"""
+
+    bodies: Annotated[list[Body], "the bodies", told_apart_by("name")]
+
+
+class Energy(Part, frozen=True):
+    """problem 2: T = 1/2 A2_ij q'_i q'_j + A1_i q'_i + A0; with speeds u of their own in these"""
+
+    kinetic_energy: Annotated[Formula, "T"]
+    A2: Annotated[
+        list[Annotated[list[Formula], BY_COORDINATE]], "second degree in the velocities, symmetric", BY_COORDINATE
+    ]
+    A1: Annotated[list[Formula], "first degree", BY_COORDINATE]
+    A0: Annotated[Formula, "of no degree"]
+    force_function: Annotated[Formula, "U = -potential energy"]
+    cyclic: Annotated[list[str], "coordinates and prescribed quantities that L does not contain"]
+    speeds: Annotated[list[str] | UnsetType, "the speeds u, in the order of A2 and A1, where they are not q'"] = UNSET
+
+
+class Routh(Part, frozen=True):
+    """problem 3 in Routh's form, where it was asked for: M_R s'' = f_R"""
+
+    ignored: Annotated[list[str], "the cyclic coordinates c, without force, that are left out"]
+    momenta: Annotated[list[str], "the names of their momenta beta, which are constants"]
+    coordinates: Annotated[list[str], "the other coordinates s, in the order of M_R and f_R"]
+    function: Annotated[Formula, "Routh's function R = L - beta.c', without c'"]
+    mass_matrix: Annotated[list[list[Formula]], "M_R"]
+    linear: Annotated[list[Formula], "b of R = 1/2 s'.M_R s' + b.s' - W"]
+    reduced_potential: Annotated[Formula, "W"]
+    forcing: Annotated[list[Formula], "f_R"]
+    ignored_rates: Annotated[list[Formula], "c'"]
+
+
+class Hamilton(Part, frozen=True):
+    """problem 3 in Hamilton's form, where it was asked for"""
+
+    momenta: Annotated[list[str], "the names of the momenta p, in the order of the coordinates"]
+    momenta_in_velocities: Annotated[list[Formula], "p = dL/dq'", BY_COORDINATE]
+    hamiltonian: Annotated[Formula, "Hamilton's function H(q, p, t)"]
+    velocities: Annotated[list[Formula], "q' = dH/dp", BY_COORDINATE]
+    rates: Annotated[list[Formula], "p' = -dH/dq + Q", BY_COORDINATE]
+
+
+class Brackets(Part, frozen=True):
+    """the first integrals of problem 7 in momenta"""
+
+    integrals: Annotated[list[str], "their names", From("names")]
+    formulas: Annotated[list[Formula], "F_i(q, p, t)"]
+    matrix: Annotated[list[list[Formula]], "their Poisson brackets"]
+    in_involution: Annotated[bool | None, "whether all brackets are zero; null where that is not decided"]
+
+
+class Measure(Part, frozen=True):
+    """a measure"""
+
+    quantity: Annotated[str, "what is measured"]
+    unit: Annotated[str, "its unit"]
+    without: Annotated[float, "without the saving"]
+    with_: Annotated[float, "with it", From("taken")]
+    at_least: Annotated[bool, "whether the number without is a lower bound"]
+
+
+class Saving(Part, frozen=True):
+    """one saving"""
+
+    kind: Annotated[str, "its kind"]
+    what: Annotated[list[str], "what was left out"]
+    why: Annotated[str, "why that is safe, in words"]
+    how: Annotated[str, "how that is known: proved, verified numerically, measured, estimated, undecided"]
+    standing: Annotated[
+        str,
+        words("not needed", "needed", "open"),
+        "whether this scene needs it: not needed, needed, open (no accuracy to hold it against)",
+    ]
+    error: Annotated[float | None, "what leaving it out changes of the motion, relative to its size (--accuracy)"]
+    tolerable: Annotated[float | None, "what a model may change at the accuracy asked for"]
+    measures: Annotated[list[Measure], "what it saved"]
+
+
+class Ledger(Part, frozen=True):
+    """what was left out of the model and what that saved (mbsym run --ledger)"""
+
+    savings: Annotated[list[Saving], "savings"]
+    not_measured: Annotated[list[str], "what was not measured, in words", From("unmeasured")]
+
+
 class SelfCheck(Part, frozen=True):
     """a comparison of two independent routes"""
 
@@ -126,8 +219,7 @@ class SelfCheck(Part, frozen=True):
     first: Annotated[str, "the first route"]
     second: Annotated[str, "the second route"]
     outcome: Annotated[
-        Literal["exact", "verified numerically", "undecided", "singular", "FAILED"],
-        "how certain it is that they agree",
+        Literal["exact", "verified numerically", "undecided", "singular", "FAILED"], "how certain it is that they agree"
     ]
     detail: Annotated[str, "how they were compared, or what differs, in words", ASIDE]
     states: Annotated[int | None, "at how many states they agree, where they are compared at states"]

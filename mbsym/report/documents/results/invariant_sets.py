@@ -31,12 +31,10 @@ class SecondVariation(Part, frozen=True):
     outcome: Annotated[Definiteness, "what it says"]
     size: Annotated[int, "number of its variables", Meta(ge=0)]
     positive: Annotated[
-        list[SignCondition] | None,
-        "conditions for K to be positive definite; null where that is impossible",
+        list[SignCondition] | None, "conditions for K to be positive definite; null where that is impossible"
     ]
     negative: Annotated[
-        list[SignCondition] | None,
-        "conditions for K to be negative definite; null where that is impossible",
+        list[SignCondition] | None, "conditions for K to be negative definite; null where that is impossible"
     ]
     for_some_value_of: Annotated[list[str], "free multipliers in the conditions", From("chosen")]
 

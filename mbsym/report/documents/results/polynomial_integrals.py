@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from mbsym.report.documents.base import told_apart_by
-from mbsym.report.documents.integrals import PolynomialBasis, ZeroLevel
-from mbsym.report.documents.symmetries import SymmetryBasis
+from mbsym.report.documents.integrals import PolynomialBasis, SymmetryBasis, ZeroLevel
 
 
 class PolynomialIntegrals(PolynomialBasis, frozen=True, kw_only=True):
