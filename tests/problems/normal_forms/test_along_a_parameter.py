@@ -173,7 +173,7 @@ def test_without_numbers_formulas_are_told_or_the_command_that_gives_them(tmp_pa
     done = runner.invoke(main, ["nonlinear", str(file)])
     assert done.exit_code == 0
     assert "D4 = " in done.output
-    assert "At numbers nothing is said: mu, a, n, m have none" in done.output
+    assert "At numbers nothing is said: there are none for mu, a, n, m.  Give them:" in done.output
     command = next(x for x in done.output.splitlines() if "--set mu=NUMBER" in x)
     words = command.replace("NUMBER", "1", 1).replace("mu=1 ", "mu=1/100 ").replace("NUMBER", "1").split()[1:]
     assert "the motion is stable (Arnold-Moser)" in runner.invoke(main, words).output
