@@ -59,6 +59,18 @@ loads:
   - rayleigh: c*x_dot**2/2
 motion: {x: {value: 0, rate: v}}
 """
+OBLIQUE = """
+mbsym: 1
+name: a valley
+parameters: {c: positive}
+bodies:
+  - {name: P, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - potential: (x - 2*y)**4
+  - damper: {coordinate: x, coefficient: c}
+  - damper: {coordinate: y, coefficient: c}
+"""
+
 WHEEL = """
 mbsym: 1
 name: wheel
@@ -109,11 +121,16 @@ def test_a_heading_does_not_call_necessary_what_its_line_does_not() -> None:
 
 
 def test_what_problem_7_lists_is_not_told_to_be_no_function_of_it() -> None:
-    analysis = mbsym.loads(WHEEL)
-    lines = " ".join(told(analysis, 9))
-    assert "B (a' + b') + c b = const" in lines
-    assert "a further integral, no function of those known without it (proved)" in lines
+    lines = " ".join(told(mbsym.loads(WHEEL), 9))
+    assert "an integral that is known (momentum of b with the impulse of forces)" in lines
     assert "no function of those of problem 7" not in lines
+
+
+def test_what_only_a_symmetry_gives_is_a_further_integral() -> None:
+    """V = (x - 2 y)^4 is the same along (2, 1), which is no axis: 2 x' + y' + c (2 x + y) = const."""
+    lines = " ".join(told(mbsym.loads(OBLIQUE), 9))
+    assert "a further integral, no function of those known without it (proved)" in lines
+    assert "2 x' + y' + c (2 x + y) = const" in lines
 
 
 @pytest.mark.parametrize("stage", ["stabilisation", "normal_forms"])
