@@ -140,8 +140,7 @@ def command(
     """
     from mbsym.analysis.forms import FORMS
     from mbsym.model.system import LANGUAGES
-    from mbsym.report.compact import DETAILS
-    from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
+    from mbsym.report.targets import ANGLES, DETAILS, FORMATS, TARGETS, shown_by
 
     options = Options()
     paths = options.descriptions(files)

@@ -101,8 +101,7 @@ def command(
       mbsym batch systems/ --cluster tcp://10.0.0.1:8786
     """
     from mbsym.batch.transport import BatchOptions, Budget
-    from mbsym.report.compact import DETAILS
-    from mbsym.report.targets import ANGLES
+    from mbsym.report.targets import ANGLES, DETAILS
 
     options = Options()
     for path in folders:

@@ -17,13 +17,12 @@ from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.telling import ToldSystem
+from mbsym.report.targets import FULL
 from mbsym.report.words.passages import Passage, passages
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
-#: How much a report for people writes out: ``compact`` tells long formulas through named intermediates.
-DETAILS = COMPACT, FULL = "compact", "full"
 #: A formula of so many terms takes some eight lines: longer ones are told through intermediates.
 LONGEST = 56
 #: So are the formulas of a problem that have more terms than this together, which is about a page.

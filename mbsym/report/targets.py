@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
+#: How much a report for people writes out: ``compact`` tells long formulas through named intermediates.
+DETAILS = COMPACT, FULL = "compact", "full"
 #: How formulas may have their angles; where none is asked for, texts for people have the shorter form of each formula,
 #: and those for programs products, one canonical form.
 ANGLES = ("products", "sums", "shorter")
