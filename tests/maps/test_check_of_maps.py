@@ -88,13 +88,13 @@ def test_planted_mistakes_are_found(drawn: Map) -> None:
     regions, arcs = drawn.of(found)
 
     def mistakes(**changed: Any) -> set[Mistake]:
-        given = {"found": found, "regions": regions, "arcs": arcs} | changed
+        given = {"decomposition": found, "regions": regions, "arcs": arcs} | changed
         return {one.mistake for one in check(drawn.section, **given).findings}
 
     wrong = replace(found.regions[0], signs=tuple(-s for s in found.regions[0].signs))
-    assert mistakes(found=replace(found, regions=(wrong, *found.regions[1:]))) >= {Mistake.SIGNS, Mistake.LAW}
-    assert Mistake.LAW in mistakes(found=replace(found, corners=found.corners[:-1]))
-    assert Mistake.LAW in mistakes(found=replace(found, arcs=found.arcs[:-1]), arcs=arcs[:-1])
+    assert mistakes(decomposition=replace(found, regions=(wrong, *found.regions[1:]))) >= {Mistake.SIGNS, Mistake.LAW}
+    assert Mistake.LAW in mistakes(decomposition=replace(found, corners=found.corners[:-1]))
+    assert Mistake.LAW in mistakes(decomposition=replace(found, arcs=found.arcs[:-1]), arcs=arcs[:-1])
     other = next(judged for judged in regions if judged.verdict.word is not regions[0].verdict.word)
     assert Mistake.VERDICT in mistakes(regions=[other, *regions[1:]])
     at = next(k for k, judged in enumerate(arcs) if judged.verdict.word is not regions[0].verdict.word)
