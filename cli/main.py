@@ -97,6 +97,12 @@ class Helped(click.Context):
             (prose if len(prose) > 1 else examples).pop()
             own.help = "\n\n".join([*prose, more, "\n".join(examples)])
             told = own.get_help(self)
+        rare = getattr(own, "rare", ())
+        if told.count("\n") >= SCREEN and rare:
+            more = f"{len(rare)} further options, and all that there is to say: mbsym explain {self.info_name}"
+            own.help = "\n\n".join([*prose, more, "\n".join(examples)])
+            own.params = [option for option in own.params if option.name not in rare]
+            told = own.get_help(self)
         return told
 
 

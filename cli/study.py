@@ -60,7 +60,13 @@ from mbsym_cli.requests import option_of, read_fields
 Found = TypeVar("Found")
 
 
-def command_of(study: Study[Any, Any]) -> click.Command:
+class StudyCommand(click.Command):
+    """``rare``: parameters whose options a long ``--help`` leaves to ``mbsym explain``."""
+
+    rare: Collection[str] = ()
+
+
+def command_of(study: Study[Any, Any]) -> StudyCommand:
     """The command; its help is what the request says of itself."""
 
     def called(file: Path | tuple[Path, ...], **texts: Any) -> None:
@@ -72,7 +78,7 @@ def command_of(study: Study[Any, Any]) -> click.Command:
         leave(files[0], command, lambda: any(run.delivered for run in runs))
 
     count = 1 if study.together is None else -1
-    return click.Command(
+    command = StudyCommand(
         study.name,
         params=[
             click.Argument(["file"], type=click.Path(path_type=Path), nargs=count, required=True),
@@ -82,6 +88,8 @@ def command_of(study: Study[Any, Any]) -> click.Command:
         callback=called,
         help=inspect.getdoc(study.request),
     )
+    command.rare = study.rare
+    return command
 
 
 def _further(study: Study[Any, Any]) -> Iterator[click.Option]:

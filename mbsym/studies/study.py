@@ -251,7 +251,8 @@ class Study(Generic[R, F]):
     not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
     go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
     seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``together`` compares the
-    results of several descriptions, where they may be asked about at once.
+    results of several descriptions, where they may be asked about at once.  ``rare``: fields whose options stand
+    in ``mbsym explain`` where ``--help`` would fill more than a screen.
     """
 
     name: str
@@ -273,6 +274,7 @@ class Study(Generic[R, F]):
     letters: bool = False
     pairs: Sequence[Apart | Needed] = ()
     together: Callable[[Sequence[tuple[Asked, R, F]]], Iterable[Block]] | None = None
+    rare: Collection[str] = ()
 
 
 def refused(before: str, error: Exception, code: Exit = Exit.FAILED, remedied: bool = False) -> Refusal:

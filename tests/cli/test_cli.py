@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from click import Context
 from click.testing import CliRunner, Result
 
 from mbsym import load, loads
@@ -21,7 +22,7 @@ from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
 from mbsym_cli.explain import TOPICS, explanations, known_words
-from mbsym_cli.main import COMMANDS, main
+from mbsym_cli.main import COMMANDS, SCREEN, main
 
 ROOT = Path(__file__).parents[2]
 SYSTEMS = ROOT / "systems"
@@ -335,6 +336,15 @@ def test_every_help_has_an_example(name: str) -> None:
     done = mbsym(name, "--help")
     assert done.exit_code == 0
     assert f"mbsym {name}" in done.stdout.split("Example")[1]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_help_fills_a_screen_at_most_and_explain_has_the_rest(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert mbsym(name, "--help").stdout.count("\n") <= SCREEN
+    whole = mbsym("explain", name).stdout
+    options = [word for option in main.get_command(Context(main), name).params for word in option.opts]
+    assert all(option in whole for option in options if option.startswith("--"))
 
 
 @pytest.mark.parametrize("number", PROBLEMS)

@@ -438,8 +438,14 @@ def refusal(error: Exception, context: Asked, request: Command) -> Refusal | Non
     return refused(error, context, request)
 
 
+#: Options that a first run does without.
+RARE = (
+    "every", "step", "max_step", "arithmetic", "step_limit", "invariants", "estimate", "whole", "certify_seconds",
+    "section", "axes", "variables", "gravity", "linear", "without", "members", "seed", "sampling", "path", "fixed",
+)  # fmt: skip
+
 STUDY = Study(
     "simulate", Command, derive, answer, refusal, unfit,
     json_help="Print JSON, that of simulation.json or ensemble.json, instead of a summary.",
-    constraints=True, held=False, out=Folder(json=True), pairs=PAIRS,
+    constraints=True, held=False, out=Folder(json=True), pairs=PAIRS, rare=RARE,
 )  # fmt: skip
