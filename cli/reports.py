@@ -164,7 +164,7 @@ def _ledger(analysis: Analysis, texts: dict[str, str | bytes], goal: AccuracyGoa
     from mbsym.report.runs.ledger import ledger_csv, with_ledger
     from mbsym.report.targets import TARGETS
 
-    run_ledger = ledger(analysis, wanted=None if isinstance(goal, bool) else goal)
+    run_ledger = ledger(analysis, goal=None if isinstance(goal, bool) else goal)
     results = TARGETS["json"].filename
     if results in texts:
         texts[results] = with_ledger(str(texts[results]), run_ledger)

@@ -489,13 +489,13 @@ OF_ANY_SYSTEM = frozenset(
 )
 
 
-def ledger(analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | None = None) -> Ledger:
+def ledger(analysis: Analysis, budget: float = BUDGET, goal: AccuracyGoal | None = None) -> Ledger:
     """What this run left out, why that is safe, and what it saved; call it when the run itself is over.
 
     ``budget`` bounds the counterfactuals together: counted work, and none is begun that would probably exceed it.  What
-    the equations leave out is held against ``wanted``, an accuracy over a time.
+    the equations leave out is held against ``goal``, an accuracy over a time.
     """
-    work = Work(analysis, budget, wanted)
+    work = Work(analysis, budget, goal)
     entries: list[Saving] = []
     unmeasured = []
     tied = bool(analysis.system.constraints or analysis.system.speeds)

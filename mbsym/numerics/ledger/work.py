@@ -74,9 +74,9 @@ class AccuracyGoal:
 class Work:
     """The model of an analysis and its counterfactuals."""
 
-    def __init__(self, analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | None = None) -> None:
+    def __init__(self, analysis: Analysis, budget: float = BUDGET, goal: AccuracyGoal | None = None) -> None:
         self.analysis = analysis
-        self.goal = wanted
+        self.goal = goal
         self.system = analysis.system
         self._budget, self._spent = budget, 0.0
         self._rings: list[Ring] = []
