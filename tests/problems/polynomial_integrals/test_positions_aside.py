@@ -77,7 +77,7 @@ def test_what_the_equations_do_not_contain_is_in_the_data_and_in_what_is_said_of
     done = CliRunner().invoke(main, ["integrals", str(path), "--vary", "B=-1:1"])
     assert done.exit_code == 0, done.output
     told = " ".join(done.output.split())
-    assert "rational or not, there is none of weight up to 4 that does not contain x, y (proved" in told
+    assert "rational or not, there is no further integral of weight up to 4 that does not contain x, y (proved" in told
     assert "B = 0 further integral of weight 1: x_dot" in told
     done = CliRunner().invoke(main, ["integrals", str(path), "--json"])
     data = json.loads(done.output)
