@@ -131,42 +131,10 @@ def _command(word: str) -> Iterator[str]:
 
 
 def _verdict(word: str) -> Iterator[str]:
-    """What a verdict of problem 6 says, in the words of docs/theory.md."""
-    from mbsym.problems.stability.words import Word
+    """What a verdict of problem 6 says."""
+    from mbsym.problems.stability.words import MEANINGS
 
-    meaning = {
-        Word.ASYMPTOTIC: "disturbed motions stay near and come back",
-        Word.ASYMPTOTIC_BUT_TURNED: "disturbed motions stay near and come back to the same motion, turned in space",
-        Word.ASYMPTOTIC_BUT_CYCLIC: (
-            "everything else comes back, or to a steady motion near by where momenta were changed; cyclic "
-            "coordinates may drift: asymptotic stability with respect to a part of the variables (Rumyantsev), "
-            "where it comes back"
-        ),
-        Word.ASYMPTOTIC_BUT_STEADY: (
-            "of a system with constraints on velocities: they come to a steady motion near by, of another speed "
-            "or at another place"
-        ),
-        Word.STABLE: (
-            "disturbed motions stay near, in the nonlinear system (of a system given by its matrices: these "
-            "equations are all there is)"
-        ),
-        Word.STABLE_BUT_CYCLIC: (
-            "everything else stays near, velocities measured by the kinetic energy; cyclic coordinates may drift: "
-            "stability with respect to a part of the variables (Rumyantsev), not Lyapunov's with positions counted"
-        ),
-        Word.GYROSCOPIC: (
-            "the first approximation is stable by gyroscopic forces; no theorem decides the nonlinear system"
-        ),
-        Word.CRITICAL: "no root is to the right; no theorem decides the nonlinear system",
-        Word.UNDECIDED: "no theorem applies",
-        Word.DEPENDS: "the cases are told with their conditions",
-        Word.UNSTABLE: "some disturbed motions leave",
-        Word.UNSTABLE_BUT_BORDERS: (
-            "some disturbed motions leave wherever no condition is an equality, whatever the parameters; about the "
-            "border nothing is said"
-        ),
-    }
-    yield from (f"A verdict of problem 6: {text}." for verdict, text in meaning.items() if verdict.value == word)
+    yield from (f"A verdict of problem 6: {text}." for verdict, text in MEANINGS.items() if verdict.value == word)
 
 
 def _theorem(word: str) -> Iterator[str]:

@@ -17,7 +17,8 @@ from mbsym import load, loads
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import MEANINGS, Word
+from mbsym.report.maps.frame import LOOKS
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
@@ -295,6 +296,11 @@ def test_explain_knows_every_command_verdict_theorem_and_key() -> None:
     assert mbsym("explain", "STABLE").stdout == mbsym("explain", "stable").stdout != ""
     assert mbsym("explain", "problem", "6").stdout == mbsym("explain", "6").stdout != ""
     assert "did you mean Arnold-Moser" in mbsym("explain", "moser").stderr
+
+
+def test_every_verdict_has_a_meaning_and_a_look() -> None:
+    """A word without a look would be drawn as no verdict."""
+    assert set(MEANINGS) == set(Word) == set(LOOKS) & set(Word)
 
 
 @pytest.mark.parametrize("name", ["satellite", "ziegler-damped", "bead-on-hoop", "ziegler"])
