@@ -181,7 +181,7 @@ class _Judge:
         if way.method.traits.fixed:  # such a method is judged at the ends of its steps, which the places then are
             at = np.union1d(at, self.times)
         try:
-            states = trial_of(self._whole(dynamics, way), dynamics, way.setting, at, way.scalar).states
+            states = trial_of(self._whole(dynamics, way), dynamics, way.setting, at, way.scalar).whole().states
         except (Breakdown, Unusable, Failure):
             return inf
         found = states[:, np.searchsorted(at, self.places)]
