@@ -62,7 +62,7 @@ def difference() -> float:
 
 def gravity(accuracy: float | None) -> Saving:
     wanted = None if accuracy is None else AccuracyGoal(accuracy, TIME)
-    (found,) = table.gravity_orders(Work(mbsym.loads(DUMBBELL, ()), wanted=wanted))
+    (found,) = table.gravity_orders(Work(mbsym.loads(DUMBBELL, ()), goal=wanted))
     return found
 
 

@@ -36,7 +36,7 @@ POINT = (
 
 
 def directions(text: str, time: float = 3.0) -> list[str]:
-    found = list(skew_plane(Work(mbsym.loads(text, ()), wanted=AccuracyGoal(1e-6, time))))
+    found = list(skew_plane(Work(mbsym.loads(text, ()), goal=AccuracyGoal(1e-6, time))))
     assert all((item.kind, item.how) == (Kind.SKEW, Certainty.VERIFIED) for item in found)
     return [item.why for item in found]
 
