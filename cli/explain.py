@@ -23,30 +23,6 @@ TOPICS = {
 }
 
 
-#: What conditions of problem 6 are called, beside the letters of coefficients, a0, a1, ... or v0, v2, ...
-CONDITIONS = {
-    "discriminant": (
-        "of the characteristic polynomial in x = lambda^2, v_2n^(2n-2) prod (x_i - x_j)^2 over its roots: zero where "
-        "two frequencies are equal. All x are real, negative and simple, which gives n frequencies, where it, the "
-        "subdiscriminants and all coefficients are positive"
-    ),
-    "subdiscriminant": (
-        "the number k is v_2n^(2k-2) times the sum of prod (x_i - x_j)^2 over all choices of k roots x = lambda^2 of "
-        "the characteristic polynomial; all roots are real and simple where all of them and the discriminant are "
-        "positive"
-    ),
-    "Hurwitz minor": (
-        "the leading minor of order k of the matrix of Hurwitz of the characteristic polynomial a_n lambda^n + ... + "
-        "a0. All real parts are negative where every coefficient and every second minor are positive (Lienard and "
-        "Chipart)"
-    ),
-    "minor": (
-        "the number k of a matrix is the determinant of its first k rows and columns; a symmetric matrix is positive "
-        "definite where all of them are positive (Sylvester)"
-    ),
-}
-
-
 @click.command("explain")
 @click.argument("topic", nargs=-1, shell_complete=among(lambda: [*map(str, NUMBERS), *TOPICS]))
 def command(topic: tuple[str, ...]) -> None:
@@ -111,7 +87,7 @@ def _near(word: str) -> list[str]:
 
 def known_words() -> list[str]:
     """Whatever can be explained, but for the numbers of problems."""
-    from mbsym.problems.stability.words import THEOREMS, HigherOrder, Word
+    from mbsym.problems.stability.words import CONDITIONS, THEOREMS, HigherOrder, Word
     from mbsym.source.topics import words
     from mbsym_cli.main import COMMANDS
 
@@ -156,6 +132,8 @@ def _theorem(word: str) -> Iterator[str]:
 
 def _condition(word: str) -> Iterator[str]:
     """What a condition of problem 6 is called after."""
+    from mbsym.problems.stability.words import CONDITIONS
+
     if word in CONDITIONS:
         yield f"A condition of problem 6: {CONDITIONS[word]}."
 

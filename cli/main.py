@@ -87,23 +87,25 @@ class Helped(click.Context):
     """``--help`` tells as much of a command as a screen holds; all of it stands in ``mbsym explain``."""
 
     def get_help(self) -> str:
-        told = super().get_help()
+        text = super().get_help()
         own = copy(self.command)
         paragraphs = inspect.cleandoc(own.help or "").split("\n\n")
-        at = next((k for k, one in enumerate(paragraphs) if "Example" in one.partition(":")[0]), len(paragraphs))
+        at = next(
+            (k for k, paragraph in enumerate(paragraphs) if "Example" in paragraph.partition(":")[0]), len(paragraphs)
+        )
         prose, examples = paragraphs[:at], "\n\n".join(paragraphs[at:]).splitlines()
         more = f"All that there is to say: mbsym explain {self.info_name}"
-        while told.count("\n") >= SCREEN and (len(prose) > 1 or len(examples) > FEWEST):
+        while text.count("\n") >= SCREEN and (len(prose) > 1 or len(examples) > FEWEST):
             (prose if len(prose) > 1 else examples).pop()
             own.help = "\n\n".join([*prose, more, "\n".join(examples)])
-            told = own.get_help(self)
-        rare = getattr(own, "rare", ())
-        if told.count("\n") >= SCREEN and rare:
+            text = own.get_help(self)
+        rare = [option for option in own.params if option.name in getattr(own, "rare", ())]
+        if text.count("\n") >= SCREEN and rare:
             more = f"{len(rare)} further options, and all that there is to say: mbsym explain {self.info_name}"
             own.help = "\n\n".join([*prose, more, "\n".join(examples)])
-            own.params = [option for option in own.params if option.name not in rare]
-            told = own.get_help(self)
-        return told
+            own.params = [option for option in own.params if option not in rare]
+            text = own.get_help(self)
+        return text
 
 
 #: Where a context has the words of its command line.

@@ -267,3 +267,9 @@ def test_an_option_that_cannot_be_read_was_given(words: str, said: list[str]) ->
     done = CliRunner().invoke(main, [command, str(SHIPPED / f"{name}.yaml"), *options])
     assert done.exit_code == 2
     assert [text.split(": ")[0] for text in done.stderr.splitlines() if "error[" in text] == said, done.stderr
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_options_that_a_long_help_leaves_out_are_there(name: str) -> None:
+    study = import_module(STUDIES[name]).STUDY
+    assert {*study.rare} <= {listed.name for listed in fields_of(study.request)}

@@ -87,6 +87,29 @@ MEANINGS = {
     ),
 }
 
+#: What conditions of problem 6 are called, beside the letters of coefficients, a0, a1, ... or v0, v2, ...
+CONDITIONS = {
+    "discriminant": (
+        "of the characteristic polynomial in x = lambda^2, v_2n^(2n-2) prod (x_i - x_j)^2 over its roots: zero where "
+        "two frequencies are equal. All x are real, negative and simple, which gives n frequencies, where it, the "
+        "subdiscriminants and all coefficients are positive"
+    ),
+    "subdiscriminant": (
+        "the number k is v_2n^(2k-2) times the sum of prod (x_i - x_j)^2 over all choices of k roots x = lambda^2 of "
+        "the characteristic polynomial; all roots are real and simple where all of them and the discriminant are "
+        "positive"
+    ),
+    "Hurwitz minor": (
+        "the leading minor of order k of the matrix of Hurwitz of the characteristic polynomial a_n lambda^n + ... + "
+        "a0. All real parts are negative where all coefficients are positive and so are the minors of orders n - 1, "
+        "n - 3, ... (Lienard and Chipart)"
+    ),
+    "minor": (
+        "the number k of a matrix is the determinant of its first k rows and columns; a symmetric matrix is positive "
+        "definite where all of them are positive (Sylvester)"
+    ),
+}
+
 
 # Why a verdict is what it is, as codes with data; ``sentences`` puts them into words.
 
