@@ -115,8 +115,8 @@ _VALID_UP_TO = (
     "that were tried, not with [[given]], as given (measured)."
 )
 _NOWHERE_VALID = (
-    "Over one period it is not within 1 % of each variable's largest value with any [[small]] that was tried, from "
-    "[[given]], as given, down to [[bound]] (measured)."
+    "Over one period it is not within 1 % of each variable's largest value with [[small]] = [[bound]], the smallest "
+    "value that was tried (measured)."
 )
 _UNMOVED = "Not counted in this are variables that it sets to zero to this order: [[names]]."
 _EXPECTED = "[[expected]] or more is expected of a right solution to this order, where [[small]] is small enough."
@@ -282,9 +282,10 @@ def measured_sentences(solution: Oscillating, measured: MeasuredOrders | str) ->
     within = beyond[-1] + 1 if beyond else 0
     if measured.relative[0] <= VALID:
         yield say(_VALID, **values, given=at[0], error=_percent(measured.relative[0]))
+    elif within == len(at):
+        yield say(_NOWHERE_VALID, **values, bound=at[-1])
     else:
-        sentence, bound = (_NOWHERE_VALID, at[-1]) if within == len(at) else (_VALID_UP_TO, at[within])
-        yield say(sentence, **values, given=at[0], bound=bound)
+        yield say(_VALID_UP_TO, **values, given=at[0], bound=at[within])
     if measured.unmoved:
         yield say(_UNMOVED, names=named(measured.unmoved))
     if rounding := tuple(name for name, order, _ in rows if order is None):
