@@ -267,7 +267,7 @@ def _told(
 def _of_determinant(ring: Ring, system: System, ranges: Mapping[str, Fraction]) -> Zeros:
     n = len(system.coordinates)
     if n > MOST_COORDINATES:
-        raise NoClosedForm(Message("a determinant of so many coordinates: [[count]]", count=n))
+        raise NoClosedForm("a determinant of so many coordinates: [[count]]", count=n)
     whole = programs(system, ring, open_tree=True)
     nodes = [x for row in whole.mass_matrix for x in row]
     entries = [ring.reduce(x) for x in whole.program.evaluate(nodes, ring_environment(system, ring), ring)]
