@@ -142,7 +142,7 @@ def _from_file(key: str, node: Node, shape: tuple[int, int], reading: Reading) -
     try:
         read = read_matrix(reading.folder, file, MOST_COORDINATES)
     except Unreadable as why:
-        reading.error("matrix-file", why.reason, scalar.span, why.remedy or None)
+        reading.error("matrix-file", why.message, scalar.span, why.hint)
         return None
     stated = fields.get("sha256")
     expected = None if stated is None else reading.scalar(stated, "'sha256'")

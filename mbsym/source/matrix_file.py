@@ -16,7 +16,6 @@ from fractions import Fraction
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from mbsym.algebra.failures import Failure
 from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 
@@ -31,8 +30,12 @@ _WHOLE = re.compile(r"\d{1,7}\Z")
 _BESIDE = "a file of a matrix stands beside the description, or in a folder below"
 
 
-class Unreadable(Failure):
-    """Why there is no matrix, and what to do about it."""
+class Unreadable(Exception):
+    """Why there is no matrix, a message with its gaps, and what to do about it."""
+
+    def __init__(self, message: str, remedy: str = "", **gaps: object) -> None:
+        self.message, self.hint = Message(message, **gaps), remedy or None
+        super().__init__(self.message)
 
 
 @dataclass(frozen=True)
