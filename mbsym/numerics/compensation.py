@@ -31,8 +31,7 @@ from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.states import InStates
 from mbsym.model.system import velocity_name
 from mbsym.numerics.kernels.arrays import stepwise
-from mbsym.numerics.kernels.cells import place_of, value_of
-from mbsym.numerics.kernels.interface import FLOAT64, Code
+from mbsym.numerics.kernels.interface import FLOAT64, Code, place_of, value_of
 from mbsym.numerics.scenario import Scenario
 
 #: The unit roundoff of float64, and digits of it.

@@ -53,9 +53,9 @@ def floquet(context: Asked, request: Request, watch: Watch) -> Judged:
 
 def answer(context: Asked, request: Request, judged: Judged) -> Answer:
     from mbsym.report.content import facts
-    from mbsym.report.runs.floquet_files import floquet_json, sentences
+    from mbsym.report.runs.orbit_files import floquet_json, floquet_sentences
 
-    return Answer([facts(sentences(judged))], {"floquet.json": floquet_json(context.system, judged)})
+    return Answer([facts(floquet_sentences(judged))], {"floquet.json": floquet_json(context.system, judged)})
 
 
 def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:

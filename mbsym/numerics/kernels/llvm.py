@@ -31,8 +31,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import PRODUCT_ROUNDING, ROUNDINGS
 from mbsym.expressions.table import Tabulated
 from mbsym.numerics.kernels import lookup, sine_cosine, stored
-from mbsym.numerics.kernels.cells import address_of
-from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel, address_of
 from mbsym.numerics.kernels.sine_cosine import splat, vector
 
 
