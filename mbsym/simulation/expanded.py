@@ -1,4 +1,4 @@
-"""How far the flow on a slow manifold, or an averaged motion, is from the motion itself: measured, at the given eps and at parts of it.
+"""How far the flow on a slow manifold, or an averaged motion, is from the motion itself: at eps and at parts of it.
 
 The motion of all equations (a tight simulation, from the bodies) starts on the manifold, z(0) = h(s(0), eps); the flow
 s' = f(s, eps), cut off after the order of the expansion, starts at the same s(0).  Their largest distance over a fixed

@@ -1,4 +1,4 @@
-"""``mbsym integrals --relations``, ``--vary`` and ``--cases``: what is printed of relations, levels, special parameters."""
+"""``mbsym integrals`` with ``--relations``, ``--vary``, ``--cases``: relations, levels, special parameters."""
 
 from __future__ import annotations
 
