@@ -14,7 +14,7 @@ from flint import fmpq, fmpq_poly
 
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.matrices import echelon
+from mbsym.algebra.matrices import echelon, faddeev
 from mbsym.algebra.plane.fields import Extension, Over, OverField, Point
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.projection import Polynomial, coefficients
@@ -293,40 +293,10 @@ class ElementMatrix:
         return echelon(_ENTRIES, self._rows, columns)
 
     def charpoly(self) -> ElementPolynomial:
-        """det(lambda - A), after a similarity that makes A of Hessenberg's form."""
-        n, a = self._size[0], self.tolist()
-        for k in range(1, n - 1):
-            pivot = next((r for r in range(k, n) if a[r][k - 1] != 0), None)
-            if pivot is None:
-                continue
-            if pivot != k:
-                a[pivot], a[k] = a[k], a[pivot]
-                for row in a:
-                    row[pivot], row[k] = row[k], row[pivot]
-            inverse = _ENTRIES.reciprocal(a[k][k - 1])
-            for r in range(k + 1, n):
-                if a[r][k - 1] == 0:
-                    continue
-                factor = a[r][k - 1] * inverse
-                a[r] = [x if _plain_zero(y) else x - factor * y for x, y in zip(a[r], a[k], strict=True)]
-                for row in a:
-                    row[k] = row[k] + factor * row[r]
-        # p_k = (lambda - a_kk) p_(k-1) - sum_i a_(k-i)k (product of subdiagonal elements) p_(k-i-1)
-        polynomials: list[list[Any]] = [[fmpq(1)]]
-        for k in range(n):
-            previous = polynomials[-1]
-            row = [fmpq(0), *previous]
-            for j, c in enumerate(previous):
-                row[j] = row[j] - a[k][k] * c
-            product: Any = fmpq(1)
-            for i in range(1, k + 1):
-                product = product * a[k - i + 1][k - i]
-                factor = product * a[k - i][k]
-                for j, c in enumerate(polynomials[k - i]):
-                    row[j] = row[j] - factor * c
-            polynomials.append(row)
+        """det(lambda - A), by ``faddeev``: an inverse would cost more than all of its products."""
         zero = self._zero()
-        return ElementPolynomial([zero + c for c in polynomials[-1]])
+        rows = [[zero + x for x in row] for row in self._rows]
+        return ElementPolynomial(faddeev(rows, zero, zero + 1)[1])
 
     def _zero(self) -> Element:
         """Raises TypeError for a matrix of rational numbers."""
