@@ -7,6 +7,7 @@ points) runs at algebraic points as it stands.  Of the field only sums, products
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product, zip_longest
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -152,6 +153,10 @@ class ElementPolynomial:
                     rest[at] = rest[at] - factor * c
         return ElementPolynomial(quotient[::-1]), ElementPolynomial(rest)
 
+    def __sub__(self, other: ElementPolynomial) -> ElementPolynomial:
+        pairs: Any = zip_longest(self._coefficients, other.coeffs(), fillvalue=fmpq(0))
+        return ElementPolynomial([a - b for a, b in pairs])
+
     def __mul__(self, other: ElementPolynomial) -> ElementPolynomial:
         a, b = self.coeffs(), other.coeffs()
         if not a or not b:
@@ -216,25 +221,13 @@ class ElementPolynomial:
         b, c = f // common, slope // common
         multiplicity = 1
         while b.degree() > 0:
-            d = _difference(c, b.derivative())
+            d = c - b.derivative()
             factor = b.gcd(d) if d.degree() >= 0 else b
             if factor.degree() > 0:
                 factors.append((factor, multiplicity))
             b, c = b // factor, d // factor
             multiplicity += 1
         return self.leading_coefficient(), factors
-
-
-def _difference(a: ElementPolynomial, b: ElementPolynomial) -> ElementPolynomial:
-    left, right = a.coeffs(), b.coeffs()
-    size = max(len(left), len(right))
-    return ElementPolynomial([_at(left, k) - _at(right, k) for k in range(size)] if size else [])
-
-
-def _at(row: Sequence[Element], k: int) -> Any:
-    if k < len(row):
-        return row[k]
-    return fmpq(0) if not row else row[0] * 0
 
 
 class ElementMatrix:
@@ -293,10 +286,13 @@ class ElementMatrix:
         return echelon(_ENTRIES, self._rows, columns)
 
     def charpoly(self) -> ElementPolynomial:
-        """det(lambda - A), by ``faddeev``: an inverse would cost more than all of its products."""
+        """det(lambda - A)"""
+        return ElementPolynomial(self._faddeev()[1])
+
+    def _faddeev(self) -> tuple[list[list[list[Any]]], list[Any]]:
+        """adj(lambda - A) and det(lambda - A): an inverse would cost more than all of these products."""
         zero = self._zero()
-        rows = [[zero + x for x in row] for row in self._rows]
-        return ElementPolynomial(faddeev(rows, zero, zero + 1)[1])
+        return faddeev([[zero + x for x in row] for row in self._rows], zero, zero + 1)
 
     def _zero(self) -> Element:
         """Raises TypeError for a matrix of rational numbers."""
@@ -306,33 +302,14 @@ class ElementMatrix:
         return some * 0
 
     def minpoly(self) -> ElementPolynomial:
-        """The monic polynomial of least degree that A annuls.
-
-        Of each unit vector in turn: what the polynomial so far makes of it, and the first of w, A w, A^2 w, ... that
-        depends on those before.
-        """
-        n, zero = self._size[0], self._zero()
-        polynomial = ElementPolynomial([zero + 1])
-        for unit in range(n):
-            w: list[Any] = [zero + int(i == unit) for i in range(n)]
-            total = [zero] * n
-            for c in reversed(polynomial.coeffs()):
-                total = [a + c * b for a, b in zip(self._applied(total), w, strict=True)]
-            if all(not x for x in total):
-                continue
-            rows = [total]
-            while True:
-                rows.append(self._applied(rows[-1]))
-                columns = ElementMatrix(n, len(rows), [row[i] for i in range(n) for row in rows])
-                reduced, pivots = columns._reduced(len(rows))
-                if len(pivots) < len(rows):
-                    break
-            relation = [-reduced[k][len(rows) - 1] for k in range(len(rows) - 1)]
-            polynomial = polynomial * ElementPolynomial([*(zero + c for c in relation), zero + 1])
-        return polynomial
-
-    def _applied(self, vector: Sequence[Any]) -> list[Any]:
-        return [_ENTRIES.dot(row, vector) for row in self._rows]
+        """The monic polynomial of least degree that A annuls: det(lambda - A) over the common divisor of its adjugate."""
+        adjugates, characteristic = self._faddeev()
+        common, places = ElementPolynomial([]), range(self._size[0])
+        for i, j in product(places, places):
+            common = common.gcd(ElementPolynomial([b[i][j] for b in reversed(adjugates)]))
+            if common.degree() == 0:
+                break
+        return ElementPolynomial(characteristic) // common
 
 
 def _plain_zero(x: Any) -> bool:
