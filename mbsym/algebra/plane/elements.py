@@ -7,8 +7,8 @@ points) runs at algebraic points as it stands.  Of the field only sums, products
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product, zip_longest
 from dataclasses import dataclass
+from itertools import product, zip_longest
 from typing import Any, Protocol
 
 from flint import fmpq, fmpq_poly
@@ -302,7 +302,7 @@ class ElementMatrix:
         return some * 0
 
     def minpoly(self) -> ElementPolynomial:
-        """The monic polynomial of least degree that A annuls: det(lambda - A) over the common divisor of its adjugate."""
+        """det(lambda - A) over the common divisor of its adjugate: the least polynomial that A annuls."""
         adjugates, characteristic = self._faddeev()
         common, places = ElementPolynomial([]), range(self._size[0])
         for i, j in product(places, places):
