@@ -19,6 +19,7 @@ TOPICS = {
     "constraints": "the kinds of constraint and their keys",
     "expressions": "what a formula may hold",
     "abbreviations": "the author's letters, in claims and in results",
+    "plain text": "the labels of the description editor's text",
     "claims": "how printed formulas are checked, and the kinds of claim",
 }
 
@@ -28,8 +29,8 @@ TOPICS = {
 def command(topic: tuple[str, ...]) -> None:
     """Print what problem TOPIC (a number) does and the formula it uses; without TOPIC, the list of problems and topics.
 
-    The topics description, loads, constraints, expressions, abbreviations and claims tell what may stand in a
-    description.  TOPIC may also be a command, a verdict, a theorem, a condition, a key or kind of a
+    The topics description, loads, constraints, expressions, abbreviations, plain text and claims tell what may stand
+    in a description.  TOPIC may also be a command, a verdict, a theorem, a condition, a key, label or kind of a
     description.
 
     \b
@@ -55,10 +56,8 @@ def command(topic: tuple[str, ...]) -> None:
         near = _near(word)
         known = f"did you mean {' or '.join(near)}?" if near else f"problems are numbered {ranges()}"
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
-        message = (
-            f"nothing is called {word}: no problem, topic, command, verdict, theorem, condition, key or kind; {known}"
-        )
-        click.echo(message, err=True)
+        kinds = "no problem, topic, command, verdict, theorem, condition, key, label or kind"
+        click.echo(f"nothing is called {word}: {kinds}; {known}", err=True)
         sys.exit(Exit.BAD_INPUT)
 
 
@@ -182,5 +181,5 @@ def _topic(name: str) -> str:
         from mbsym.problems import claims
 
         return f"{str(claims.__doc__).strip()}\n\n{topics.claim_kinds()}"
-    text: str = getattr(topics, name)()
+    text: str = getattr(topics, name.replace(" ", "_"))()
     return text

@@ -20,6 +20,7 @@ from mbsym.model.claims import CLAIMS
 from mbsym.problems.stability.words import MEANINGS, Word
 from mbsym.report.maps.frame import LOOKS
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
+from mbsym.source.labels import BODY as LABELS
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
 from mbsym_cli.explain import TOPICS, explanations, known_words
@@ -314,7 +315,8 @@ def test_explain_knows_what_conditions_are_called(name: str) -> None:
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_topics_name_everything_that_is_read(topic: str) -> None:
-    known = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "constraints": CONSTRAINTS}
+    labels = [label.capitalize() for label in LABELS]
+    known = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "constraints": CONSTRAINTS, "plain text": labels}
     wanted = {**known, "expressions": FUNCTIONS, "abbreviations": ["abbreviations:", "--in"], "claims": CLAIMS}[topic]
     done = mbsym("explain", topic)
     assert done.exit_code == 0
