@@ -13,7 +13,7 @@ import yaml
 from mutants import mutant
 
 import mbsym
-from mbsym.editing.document import changes, formula, look
+from mbsym.editing.document import changes, look
 from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.written import data_of, written
 from mbsym.problems.claims import Outcome
@@ -140,14 +140,6 @@ def test_offsets_are_of_the_text_with_its_own_line_ends() -> None:
     text = "\ufeff" + PENDULUM.replace("cart and", "cärt 🚋 and").replace("\n", "\r\n")
     field = look(text, "x.yaml")["bodies"][0]["fields"]["connection point"]
     assert text[field["from"] : field["to"]] == "[x,0 ,0]"
-
-
-def test_formula() -> None:
-    assert formula("l/2")["mathml"].startswith("<math><mfrac>")
-    complaint = formula("m*(")["complaint"]
-    assert complaint["severity"] == "error"
-    assert 0 <= complaint["from"] <= complaint["to"]
-    assert "<script" not in str(formula("<script>"))
 
 
 # --- edits ------------------------------------------------------------------------------------------------------------
