@@ -14,16 +14,18 @@ from click import Context
 from click.testing import CliRunner, Result
 
 from mbsym import load, loads
+from mbsym.algebra.certainty import Certainty
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
 from mbsym.problems.stability.words import MEANINGS, Word
 from mbsym.report.maps.frame import LOOKS
+from mbsym.report.maps.words import EVENTS
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.labels import BODY as LABELS
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
-from mbsym_cli.explain import TOPICS, explanations, known_words
+from mbsym_cli.explain import TOPICS, _as_known, explanations, known_words
 from mbsym_cli.main import COMMANDS, SCREEN, main
 
 ROOT = Path(__file__).parents[2]
@@ -311,6 +313,24 @@ def test_explain_knows_what_conditions_are_called(name: str) -> None:
     labels = [str(requirement.label) for part in parts for requirement in part.theory.requirements]
     called = {re.sub(r" (of|[0-9]+).*", "", label) for label in labels}
     assert {word for word in called if not re.fullmatch(r"[a-z][0-9]*", word)} <= set(known_words())
+
+
+def test_explain_knows_what_reports_say() -> None:
+    """How surely a thing is known, what happens to branches, and words as they stand: plural, numbered, capital."""
+    for word in (
+        *Certainty,
+        *EVENTS.values(),
+        "First integrals",
+        "minor 2 of K",
+        "lambda_2",
+        "Eigenvalues",
+        "linearisation",
+    ):
+        assert explanations(word) or explanations(_as_known(word)) or word.startswith(("degenerate", "infinitely")), (
+            word
+        )
+    assert explanations(_as_known("minor 2 of K")) == explanations("minor")
+    assert not explanations(_as_known("thing 2 of K"))
 
 
 @pytest.mark.parametrize("topic", TOPICS)

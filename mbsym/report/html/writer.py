@@ -143,7 +143,7 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Numbered) -> Markup:
-        return Markup('\u00a0<a class="there" href="#{}">\u2193</a>').format(_anchor(value.key))
+        return Markup('<a class="there" href="#{}">\u00a0\u2193</a>').format(_anchor(value.key))
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
