@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.safe import UNBROKEN
 from mbsym.report import content
 from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
@@ -272,13 +273,13 @@ def show_finding(
     more: bool = False,
 ) -> None:
     """What was found, each with its name; ``further`` lines; where all of it is, and how ``more`` of it is told."""
-    tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
+    tell((title, "bold"), (f"  {printable(path)},{UNBROKEN}{seconds:.2f}{UNBROKEN}s", "dim"))
     show((*writer.document([facts]), *further))
     if files:
         page = next((x for x in files if x.name == "report.html"), files[0])
         texts = ("[[file]]", "[[file]] (files there: [[count]])")
         if more:
-            texts = ("[[file]] (all of it here: -v)", "[[file]] (files there: [[count]]; all of it here: -v)")
+            texts = ("[[file]] (-v tells all of it here)", "[[file]] (files there: [[count]]; -v tells all of it here)")
         tell(writer.said(content.say(texts[len(files) > 1], file=printable(page), count=str(len(files)))), indent=2)
 
 
