@@ -494,7 +494,7 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
         _, cyclic, manifold = expanded_with(analysis)
         jets = expansion(*about, order + 2, cyclic, manifold)
         return taylor_field(jets, order + 1), True
-    field = vector_field(analysis.form, equations, (), images)[0]
+    field = vector_field(analysis.form, equations, (), images, rooted=True)[0]
     for name in names:
         if weights.get(name) and any(f"({name}" in variable for variable in field.variables):
             raise NoClosedForm(
