@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import count, pairwise
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 from flint import acb
@@ -21,7 +22,7 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.terms import evaluated, with_quotients
+from mbsym.algebra.terms import apart, evaluated, with_quotients
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.angles import LinearForm
@@ -90,8 +91,17 @@ class Oscillating:
     def formula(self, x: Element, ring: Ring | None = None) -> Formula:
         """An element; in ``told_ring`` with letters for common denominators."""
         letters = None if ring is None else self.denominators
-        whole = self.ring if ring is None else ring
-        return Formula(whole, in_letters(self.oscillation.tower, whole, self.symbols, x, letters))
+        whole, tower, parts = self.ring if ring is None else ring, self.oscillation.tower, [x]
+        if len(self.phases) > 1:  # what stands before each product of amplitudes, in lowest terms
+            places = [MOST_ROOTS + tower.parameters.index(amplitude_symbol(k)) for k in range(len(self.phases))]
+            parts = [
+                tower.made(
+                    p * prod(tower.context.gens()[k] ** n for k, n in zip(places, powers, strict=True)), x.bottom
+                )
+                for powers, p in apart(x.top, places).items()
+            ]
+        told = (in_letters(tower, whole, self.symbols, part, letters) for part in parts)
+        return Formula(whole, sum(told, whole.zero))
 
     @cached_property
     def denominators(self) -> tuple[tuple[Any, str], ...]:
@@ -121,9 +131,10 @@ class Oscillating:
             return self.ring
         names = [g.name for g in self.ring.generators if g.kind == "parameter" and g.name != "pi"]
         positive = [name for name in names if self.ring.is_positive(self.ring.generator("parameter", name))]
-        return Ring(
-            (), self.phases, [*names, *(name for _, name in self.denominators)], self.ring.angles, positive, spare=40
-        )
+        told = [*names, *(name for _, name in self.denominators)]
+        ring = Ring((), self.phases, told, self.ring.angles, positive, spare=40)
+        ring.leading = frozenset(ring.index("parameter", self.ring.generators[k].name) for k in self.ring.leading)
+        return ring
 
     def wave(self, harmonics: Harmonics, target_ring: Ring | None = None) -> Formula:
         """A trigonometric polynomial of the phases."""
@@ -562,7 +573,11 @@ def _letters(system: System, symbolic: list[str], phases: Sequence[str], symbols
         parameter.name for parameter in system.parameters if parameter.name in names and parameter.sign == "positive"
     ]
     positive += [shown for symbol, shown in symbols.items() if symbol.startswith(AMPLITUDE)]
-    return Ring((), phases, [*names, *symbols.values()], dict.fromkeys(phases, 1) | angles, positive, spare=40)
+    ring = Ring((), phases, [*names, *symbols.values()], dict.fromkeys(phases, 1) | angles, positive, spare=40)
+    if len(phases) > 1:  # products of several amplitudes: what stands before each is told
+        amplitudes = (shown for symbol, shown in symbols.items() if symbol.startswith(AMPLITUDE))
+        ring.leading = frozenset(ring.index("parameter", shown) for shown in amplitudes)
+    return ring
 
 
 def in_letters(
