@@ -88,32 +88,45 @@ class Oscillating:
         """The first."""
         return self.phases[0]
 
-    def formula(self, x: Element, ring: Ring | None = None) -> Formula:
-        """An element; in ``told_ring`` with letters for common denominators."""
+    def formula(self, x: Element, ring: Ring | None = None, finely: bool = False) -> Formula:
+        """An element; in ``told_ring`` with letters for common denominators.
+
+        What stands before each product of amplitudes is in lowest terms by itself; ``finely``: and of those parameters,
+        too, by which nothing is divided.
+        """
         letters = None if ring is None else self.denominators
-        whole, tower, parts = self.ring if ring is None else ring, self.oscillation.tower, [x]
-        if len(self.phases) > 1:  # what stands before each product of amplitudes, in lowest terms
-            places = [MOST_ROOTS + tower.parameters.index(amplitude_symbol(k)) for k in range(len(self.phases))]
-            parts = [
-                tower.made(
-                    p * prod(tower.context.gens()[k] ** n for k, n in zip(places, powers, strict=True)), x.bottom
-                )
-                for powers, p in apart(x.top, places).items()
-            ]
-        told = (in_letters(tower, whole, self.symbols, part, letters) for part in parts)
-        return Formula(whole, sum(told, whole.zero))
+        whole, tower = self.ring if ring is None else ring, self.oscillation.tower
+        places = [MOST_ROOTS + tower.parameters.index(amplitude_symbol(k)) for k in range(len(self.phases))]
+        places += [k for k in self._above if k not in places] if finely else []
+        gens, total = tower.context.gens(), whole.zero
+        for powers, p in apart(x.top, places).items():
+            product = prod((gens[k] ** n for k, n in zip(places, powers, strict=True)), start=p)
+            total = total + in_letters(tower, whole, self.symbols, tower.made(product, x.bottom), letters)
+        return Formula(whole, total)
 
     @cached_property
-    def denominators(self) -> tuple[tuple[Any, str], ...]:
-        """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
+    def _coefficients(self) -> list[Element]:
+        """Of all waves, and of the rates of the phases."""
         expansion = self.oscillation
         waves = [harmonics for series in expansion.series for harmonics in series] + [
             x for drift in expansion.drifts for x in drift.waves
         ]
         values = [x for wave in waves for pair in wave.waves.values() for x in pair if not x.is_zero()]
+        return [*values, *(x for phase in expansion.phases for x in phase.corrections)]
+
+    @cached_property
+    def _above(self) -> list[int]:
+        """Places of parameters that stand in no denominator and under no root."""
+        tower = self.oscillation.tower
+        below = {k for x in self._coefficients for k in occurring([x.bottom])} | {*occurring(tower.squares)}
+        return [MOST_ROOTS + k for k in range(len(tower.parameters)) if MOST_ROOTS + k not in below]
+
+    @cached_property
+    def denominators(self) -> tuple[tuple[Any, str], ...]:
+        """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
         factors: list[Any] = []
         often: list[int] = []
-        for x in [*values, *(x for phase in expansion.phases for x in phase.corrections)]:
+        for x in self._coefficients:
             for factor, _ in x.bottom.factor()[1]:
                 if len(factor) > 1 and not any(factor.degrees()[:MOST_ROOTS]):
                     if factor not in factors:
@@ -136,26 +149,27 @@ class Oscillating:
         ring.leading = frozenset(ring.index("parameter", self.ring.generators[k].name) for k in self.ring.leading)
         return ring
 
-    def wave(self, harmonics: Harmonics, target_ring: Ring | None = None) -> Formula:
+    def wave(self, harmonics: Harmonics, target_ring: Ring | None = None, finely: bool = False) -> Formula:
         """A trigonometric polynomial of the phases."""
         ring = self.ring if target_ring is None else target_ring
         total = ring.zero
         for k, (a, b) in harmonics.waves.items():
             turns = zip(self.phases, multiples(k, len(self.phases)), strict=True)
             sine, cosine = ring.sin_cos(LinearForm(tuple((phase, Fraction(n)) for phase, n in turns if n)))
-            total = total + ring.times(self.formula(a, target_ring).polynomial, cosine)
-            total = total + ring.times(self.formula(b, target_ring).polynomial, sine)
+            for x, turned in ((a, cosine), (b, sine)):
+                total = total + ring.times(self.formula(x, target_ring, finely).polynomial, turned)
         return Formula(ring, total if target_ring is not None else ring.reduce(total))
 
     def shortest(self, harmonics: Harmonics) -> Formula:
         """The same with letters for common denominators, in the form that takes least to be written."""
-        whole = self.wave(harmonics)
-        if not self.denominators:
-            return whole
-        plain = self.wave(harmonics, self.told_ring)
-        reduced = Formula(plain.ring, plain.ring.reduce(plain.polynomial))
+        wholes = [self.wave(harmonics), self.wave(harmonics, finely=True)]
+        plain = [self.wave(harmonics, self.told_ring, finely) for finely in (False, True)] if self.denominators else []
+        reduced = [Formula(x.ring, x.ring.reduce(x.polynomial)) for x in plain[:1]]
         with letters_as(None):  # to write each in letters would take long
-            named = min((plain, reduced), key=lambda x: len(x.text()))
+            whole = min(wholes, key=lambda x: len(x.text()))
+            if not plain:
+                return whole
+            named = min((*plain, *reduced), key=lambda x: len(x.text()))
             raw, most = len(named.text()), len(whole.text())
         length = len(whole.text())
         if length < min(raw, most):
@@ -574,9 +588,8 @@ def _letters(system: System, symbolic: list[str], phases: Sequence[str], symbols
     ]
     positive += [shown for symbol, shown in symbols.items() if symbol.startswith(AMPLITUDE)]
     ring = Ring((), phases, [*names, *symbols.values()], dict.fromkeys(phases, 1) | angles, positive, spare=40)
-    if len(phases) > 1:  # products of several amplitudes: what stands before each is told
-        amplitudes = (shown for symbol, shown in symbols.items() if symbol.startswith(AMPLITUDE))
-        ring.leading = frozenset(ring.index("parameter", shown) for shown in amplitudes)
+    amplitudes = (shown for symbol, shown in symbols.items() if symbol.startswith(AMPLITUDE))
+    ring.leading = frozenset(ring.index("parameter", shown) for shown in amplitudes)  # what stands before each is told
     return ring
 
 

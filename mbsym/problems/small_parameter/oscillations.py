@@ -355,7 +355,7 @@ def _positive_root(tower: Tower, square: Element) -> Element:
 def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
     tower = there.tower
     top = _but_powers(tower, demand)
-    condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
+    condition = there.told(tower.made(top / top.factor()[0], tower.context.constant(1)))
     return NoClosedForm(
         "in the order [[order]] of [[small]] secular terms remain unless [[condition]] = 0: "
         "amplitudes that square roots do not express are not followed",
@@ -368,7 +368,7 @@ def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
 def _other_amplitude(there: Equations, demand: Demand) -> NotPeriodic:
     tower = there.tower
     top = _but_powers(tower, demand)
-    condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
+    condition = there.told(tower.made(top / top.factor()[0], tower.context.constant(1)))
     return NotPeriodic(
         "with this amplitude secular terms remain in the order [[order]] of [[small]]: the amplitude "
         "has to fulfil [[condition]] = 0",
@@ -390,7 +390,7 @@ def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
     where = Message("in the order [[order]] of [[small]] secular terms remain", order=order, small=there.small)
     if condition.is_constant():
         return NotPeriodic("[[none]]: [[where]] for every real amplitude", none=none, where=where)
-    formula = there.told(tower.made(condition / condition.leading_coefficient(), tower.context.constant(1)))
+    formula = there.told(tower.made(condition / condition.factor()[0], tower.context.constant(1)))
     degrees = zip(tower.parameters, condition.degrees()[MOST_ROOTS:], strict=True)
     if any(degree > 0 and name.startswith("#") for name, degree in degrees):
         return NoClosedForm(
