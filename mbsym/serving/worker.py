@@ -172,14 +172,11 @@ def _system(task: Task) -> System:
 
 
 def _derive(task: Task, system: System) -> Iterator[Message]:
-    from mbsym.analysis import USUAL_PROBLEMS, Analysis
-    from mbsym.analysis.given import chosen
     from mbsym.report.html.report import title
+    from mbsym.report.whole_run import analysis_of
 
-    requested_problems = task.get("problems")
-    problems = tuple(sorted(requested_problems)) if requested_problems else chosen(system, USUAL_PROBLEMS)
-    analysis = Analysis(system, problems)
-    analysis.language = task.get("language") or ""
+    analysis = analysis_of(system, task.get("problems") or None, ("html",))
+    analysis.language, problems = task.get("language") or "", analysis.problems
     yield {"kind": "plan", "sections": [[str(x), title(analysis, x)] for x in _plan(analysis)]}
     yield _section(analysis, "system", ())
     done: list[int] = []
@@ -233,19 +230,13 @@ def _section(analysis: Analysis, part: str | int, problems: tuple[int, ...]) -> 
 
 def _export(task: Task, system: System) -> Iterator[Message]:
     """All files of the formats asked for, as ``mbsym run`` makes them."""
-    from mbsym.analysis import Analysis
-    from mbsym.analysis.given import chosen
-    from mbsym.report.targets import FORMATS, shown_by
-    from mbsym.report.whole_run import derive_all, lost, rendered_all
+    from mbsym.report.targets import FORMATS
+    from mbsym.report.whole_run import analysis_of, lost, silent, whole_run
 
     formats = [name for name in task["formats"] if name in FORMATS]
-    requested_problems = task.get("problems")
-    problems = tuple(sorted(requested_problems)) if requested_problems else chosen(system, shown_by(formats))
-    analysis = Analysis(system, problems)
+    analysis = analysis_of(system, task.get("problems") or None, formats)
     analysis.language = task.get("language") or ""
-    said: list[str] = []
-    early = derive_all(analysis, formats, said.append)
-    files = rendered_all(analysis, formats, said.append, files=early)
+    files = whole_run(analysis, formats, silent)
     words = [f"{where}: {failure.reason}" for where, failure in lost(analysis, files)]
     words += [f"self-check failed: {check.name}: {check.detail}" for check in analysis.checks if check.failed]
     yield {
