@@ -17,7 +17,7 @@ from click.core import ParameterSource
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint
-from mbsym.model.system import System
+from mbsym.model.system import LANGUAGES, System
 from mbsym.report.content import Block
 from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
@@ -185,7 +185,8 @@ class _Run:
 
     def code(self) -> int:
         study, file, self.started = self.study, self.file, time.perf_counter()
-        spoken = next((self.texts[x.name] for x in fields_of(study.request) if isinstance(x.kind, Tongue)), None) or ""
+        said = (self.texts[x.name] or "" for x in fields_of(study.request) if isinstance(x.kind, Tongue))
+        spoken = next((text.lower() for text in said if text.lower() in LANGUAGES), "")
         system = self.described()
         self.say = self.options.say = Language(spoken or ("" if system is None else system.language)).say
         values, scenario, system = read_fields(file, system, study.request, self.texts, self.options)

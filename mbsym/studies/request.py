@@ -15,7 +15,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_hints
 
 from mbsym.expressions.message import Message
-from mbsym.model.system import LANGUAGES
+from mbsym.model.system import LANGUAGES, ONE_OF_LANGUAGES
 from mbsym.problems import NUMBERS, ranges
 
 if TYPE_CHECKING:
@@ -307,9 +307,9 @@ def formats(help: str, choices: tuple[str, ...], usual: str = "") -> Words:
     return Words("LIST", help, "-f", usual=usual, choices=choices, what="format")
 
 
-def language(help: str) -> Word:
-    """``--language``, of figures and texts."""
-    return Word("NAME", help, choices=tuple(LANGUAGES), what="language")
+def language(what: str, usual: str = "", kind: type[Word] = Word) -> Word:
+    """``--language`` of ``what``."""
+    return kind("LANGUAGE", f"{what}: {ONE_OF_LANGUAGES}.", usual=usual, choices=tuple(LANGUAGES), what="language")
 
 
 @dataclass(frozen=True)

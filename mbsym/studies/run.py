@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.expressions.safe import safe
-from mbsym.model.system import LANGUAGES
 from mbsym.report.targets import ANGLES, DETAILS, FORMATS, TARGETS
 from mbsym.studies.described import Source, public
 from mbsym.studies.described import analysis_of as analysis_from
@@ -29,6 +28,7 @@ from mbsym.studies.request import (
     Whole,
     Word,
     Words,
+    language,
 )
 from mbsym.studies.study import Among, Answer, Asked, Exit, Folder, Line, Needed, Refusal, Study, Watch
 
@@ -88,13 +88,7 @@ class Request:
     animate: Annotated[float | None, Number("T", "The motion from 0 to T in report.html, in three dimensions.")] = None
     language: Annotated[
         str | None,
-        Tongue(
-            "LANGUAGE",
-            "Of the reports: en, ru or es.",
-            usual="the description's, or en",
-            choices=tuple(LANGUAGES),
-            what="language",
-        ),
+        language("Of the reports", "the description's, or en", Tongue),
     ] = None
     ledger: Annotated[bool, Flag(None, "What was left out, why that is safe, and what it saved.")] = False
     accuracy: Annotated[
