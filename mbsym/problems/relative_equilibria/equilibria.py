@@ -41,7 +41,7 @@ from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, Sol
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Counted, Message, joined
-from mbsym.mechanics.charts import Chart, charts, with_cyclic_last_angles
+from mbsym.mechanics.charts import Chart, charts, joints, with_cyclic_last_angles
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
 from mbsym.mechanics.variables import ring_environment
@@ -148,6 +148,13 @@ def _listed(
     families: list[EquilibriumFamily] = []
     complete = True
     uncounted: list[bool] = []
+    if isinstance(first, Orbits) and (turns := joints(first.system, first.turning)):
+        text = (
+            "angles of [[bodies]] that are singular somewhere were not replaced by others: steady motions there may be "
+            "missing, and one may be listed more than once"
+        )
+        remarks.append(Message(text, bodies=", ".join(joint.body for joint in turns)))
+        complete = False
     covering = (Chart(first, (), (), (), ()),) if isinstance(first, Orbits) else charts(first, described_by)
     limits = replace(limits, reduction=REDUCTION) if first.rows and not limits.reduction else limits
     for chart in covering:
