@@ -168,7 +168,7 @@ class LinearAtRest:
                 columns = list(range(n))
                 weigh: dict[str, Any] = {}
                 if place.modulus is None:  # balls: what may be 0 divides nothing
-                    weigh = {"weight": _smallness}
+                    weigh = {"weight": smallness}
                     first = pivot_rows([[float(x.mid()) for x in row[:-1]] for row in table])
                     columns = [*first, *(k for k in columns if k not in first)]
                     table = [table[k] for k in columns]
@@ -221,7 +221,7 @@ class LinearAtRest:
         return None if residue is None or residue.degree() > 0 else residue[0]
 
 
-def _smallness(x: Any) -> int | None:
+def smallness(x: Any) -> int | None:
     """How small a ball is, of what may be 0 more than of all others; None of an exact 0."""
     if x.is_zero():
         return None
