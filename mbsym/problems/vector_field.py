@@ -62,7 +62,8 @@ def vector_field(
     if their relations are solved.  Raises NoClosedForm where M is singular, and where the time, inputs, other roots or
     functions other than exponentials occur.
     """
-    if rooted:
+    tied = equations.constraints
+    if rooted and (tied is None or not tied.position_rank):  # else reciprocals may be tied by what ties positions
         with suppress(NoClosedForm):
             field, transfer = _of(_State(form, equations, images, driven, rooted, divided=True), also)
             if field.are_solved:

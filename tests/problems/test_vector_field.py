@@ -415,6 +415,15 @@ def test_where_reciprocals_are_no_variables_they_are_denominators(potential):
     assert there.rational
 
 
+def test_what_constraints_tie_is_no_reciprocal_by_itself():
+    """On a sphere 1/z is tied to x and y: without that relation integrals on it would be denied."""
+    text = POINT.format(place="x, y, z", names="x, y, z", potential="k*x**2 + h*y**2 + g*z")
+    text += "constraints:\n  - relation: x**2 + y**2 + z**2 = 1\ndependent: [z]\n"
+    field = setting(mbsym.loads(text), driven=True).field
+    x, y, z = map(field.generator, "xyz")
+    assert field.relations == (x**2 + y**2 + z**2 - 1,)
+
+
 def test_a_root_of_a_unit_vector_is_refused():
     """On the sphere gamma1^2 + gamma2^2 = (1 - gamma3)(1 + gamma3): what is no square there is not looked at."""
     text = Path("systems/kirchhoff.yaml").read_text().split("values:")[0]
