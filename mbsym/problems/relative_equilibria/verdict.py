@@ -107,7 +107,8 @@ class LinearAtRest:
             ring.is_zero(x) is not True for x in (*by_velocities, *(x for row in self.matrices[2] for x in row))
         )
         conserved, only = self.law is EnergyLaw.CONSERVED, len(remaining) == len(names)
-        verdict = by_potential(len(remaining), derivative, field, conserved, only, gyroscopic)
+        damping = [[place.ball(self.matrices[1][i][j]) for j in remaining] for i in remaining]
+        verdict = by_potential(len(remaining), derivative, field, conserved, only, gyroscopic, damping)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
 
     @property
