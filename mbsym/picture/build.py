@@ -374,7 +374,16 @@ class _Made:
     def _closure(self) -> Closure:
         slopes = tuple(tuple(self._value[x.number] for x in row) for row in self.slopes)
         rows = tuple(self._value[x.number] for x in self.rows)
-        return Closure(self.system.coordinates, rows, slopes, tuple(self.labels))
+        return Closure(self.system.coordinates, rows, slopes, tuple(self.labels), CLOSED * self._small())
+
+    def _small(self) -> float:
+        """How far the start reaches from the origin, where that is less than the 1 beside which gaps are measured.
+
+        Not less than what roundings leave of rows between angles.
+        """
+        values, places = self.program.at(samples(self.known, self.scenario)[0]), self.places
+        points = [x for name in places.carried for x in (places.origins[name], self.centres[name])]
+        return min(1.0, max(LEAST_SMALL, *(hypot(*at(values, self.at(point))) for point in points)))
 
     def picture(self, found: Start) -> Picture:
         """All of it as values."""
@@ -504,6 +513,9 @@ def measure(system: System, name: str) -> Measure:
 # A step that keeps the moved coordinate is the shortest solution of J dq = -f (Newton's method on rows that may be
 # dependent); ``closed`` takes such steps, a page does the same in its own language.
 
+
+#: A row is closed below this part of what it is measured by.
+CLOSED, LEAST_SMALL = 1e-9, 1e-3
 
 #: Newton's steps at most.
 STEPS = 60

@@ -192,7 +192,7 @@ class Closure:
     rows: tuple[int, ...]
     slopes: tuple[tuple[int, ...], ...]
     names: tuple[str, ...]
-    tolerance: float = 1e-9
+    tolerance: float
 
 
 @dataclass(frozen=True)
