@@ -22,38 +22,24 @@ from markupsafe import escape
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.parts import missing
+from mbsym.batch.worker import OUT_OF_MEMORY, PENDULUM, bounded, hang_on
 from mbsym.source import read
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
 
-#: Exit codes: the memory that a job may have was not enough.
-OUT_OF_MEMORY = 75
-
 #: Tasks that fill a page by and by.
 PATIENT = ("derive", "export", "map")
-
-_WARMING = """\
-mbsym: 1
-name: pendulum
-parameters: {m: positive, l: positive, g: positive}
-bodies:
-  - {name: bob, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [0, -l, 0], mass: m,
-     inertia about: mass centre, inertia: [0, 0, 0]}
-loads:
-  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
-motion: {x: 0}
-"""
 
 
 def warm() -> None:
     """Loads what every job needs, and has used it once."""
 
     with suppress(Exception):
-        for _ in perform({"kind": "derive", "text": _WARMING, "name": "pendulum.yaml", "problems": [1, 3, 6]}):
+        for _ in perform({"kind": "derive", "text": PENDULUM, "name": "pendulum.yaml", "problems": [1, 3, 6]}):
             pass
-        for _ in perform({"kind": "picture", "text": _WARMING, "name": "pendulum.yaml"}):
+        for _ in perform({"kind": "picture", "text": PENDULUM, "name": "pendulum.yaml"}):
             pass
 
 
@@ -66,8 +52,8 @@ def attend(connection: Connection, memory: int, cold: bool = False) -> None:
         connection.send({"kind": "ready"})
         task: dict[str, Any] = connection.recv()
         _step_back(task)
-        _hang_on(connection.fileno())
-        _bound(memory)
+        hang_on(connection.fileno())
+        bounded(memory)
 
         for message in perform(task):
             connection.send(message)
@@ -95,37 +81,6 @@ def _step_back(task: dict[str, Any]) -> None:
     if task.get("kind") in PATIENT and hasattr(os, "nice"):
         with suppress(OSError):
             os.nice(10)
-
-
-def _bound(memory: int) -> None:
-    """No more than so many bytes, where the system has such a bound; and no core dumps."""
-    try:
-        import resource
-    except ImportError:
-        return
-    with suppress(ValueError, OSError):
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    with suppress(ValueError, OSError):
-        kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
-        resource.setrlimit(kind, (memory, memory))
-
-
-def _hang_on(handle: int) -> None:
-    """A signal that ends this process comes from the system itself when the other end is closed, also amid algebra
-    that does not let threads run."""
-    try:
-        import fcntl
-        import select
-        import signal
-
-        signal.signal(signal.SIGIO, signal.SIG_DFL)
-        fcntl.fcntl(handle, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(handle, fcntl.F_SETFL, fcntl.fcntl(handle, fcntl.F_GETFL) | os.O_ASYNC)
-        gone = select.select([handle], [], [], 0)[0]
-    except (ImportError, AttributeError, OSError, ValueError):
-        return
-    if gone:
-        os._exit(1)
 
 
 # What a job does, in a process of its own: a generator of what there is to tell, section by section.

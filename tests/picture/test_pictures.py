@@ -232,6 +232,24 @@ def test_a_loop_that_cannot_be_closed_is_told() -> None:
     assert not any("open" in x for x in good)
 
 
+@pytest.mark.parametrize("length", ["1", "1e-8"])
+def test_a_rod_that_is_a_tenth_too_long_is_open_in_all_units(length: str) -> None:
+    """A bob at (0, -l) and a rod of 1.1 l: with l = 1e-8 it counted as closed, beside 1 + |y|."""
+    text = f"""mbsym: 1
+name: rod
+bodies:
+  - {{name: bob, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}}
+constraints:
+  - distance: {{between: [{{body: bob, point: [0, 0, 0]}}, {{body: 0, point: [0, 0, 0]}}], length: {length}}}
+initial: {{x: 0, y: -{length}}}
+"""
+    found = picture(of(text))
+    assert found.closure is not None
+    bob = {x.name: x.value for x in found.coordinates}
+    assert max(gaps(found.program, found.closure, bob)) <= found.closure.tolerance
+    assert max(gaps(found.program, found.closure, bob | {"y": 1.1 * bob["y"]})) > found.closure.tolerance
+
+
 def test_what_orbits_is_seen_from_its_orbit() -> None:
     found = picture(mbsym.load(SYSTEMS / "satellite.yaml").system)
     assert found.frame == "orbital frame"
