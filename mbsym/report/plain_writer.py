@@ -81,7 +81,7 @@ class Writer:
         if isinstance(value, content.Phrase):
             for part in value.parts:
                 yield from self.pieces(part)
-        elif isinstance(value, content.Link | content.Under):
+        elif isinstance(value, content.Link):
             yield from self.pieces(value.text)
         elif isinstance(value, Said):
             parts = (
@@ -167,8 +167,7 @@ class Writer:
     @inline.register(content.Strong)
     @inline.register(content.Graded)
     @inline.register(content.Link)
-    @inline.register(content.Under)
-    def _(self, value: content.Strong | content.Graded | content.Link | content.Under) -> str:
+    def _(self, value: content.Strong | content.Graded | content.Link) -> str:
         return self.inline(value.text)
 
     @inline.register(content.Emphasis)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mbsym.editing import explanation, suggestions
+from mbsym.editing import explanation, place, suggestions
 from mbsym.editing.document import look
 from mbsym.editing.document.view import content, math, moved, told
 from mbsym.expressions.place import Complaint, Complaints, Span
@@ -145,14 +145,9 @@ def word_at(text: str, offset: int) -> tuple[int, int, int, int]:
     """Line and column (from 0, in characters) of a place, and the word around it in units."""
     places = Offsets(text)
     at = places.characters(offset)
-    line = text.count("\n", 0, at)
-    column = at - (text.rfind("\n", 0, at) + 1)
-    start, end = at, at
-    while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
-        start -= 1
-    while end < len(text) and (text[end].isalnum() or text[end] == "_"):
-        end += 1
-    return line, column, places.units(start), places.units(end)
+    line, begin = text.count("\n", 0, at), text.rfind("\n", 0, at) + 1
+    _, start, end = place.word_at(text[begin:].partition("\n")[0], at - begin)
+    return line, at - begin, places.units(begin + start), places.units(begin + end)
 
 
 def hovered(text: str, offset: int) -> dict[str, Any] | None:

@@ -139,7 +139,7 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Under) -> Markup:
-        return Markup('<span class="under">{}</span>').format(self.inline(value.text))
+        return Markup('<span class="under">{}</span>').format(self._joined(value.parts))
 
     @inline.register
     def _(self, value: content.Numbered) -> Markup:

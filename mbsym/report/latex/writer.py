@@ -112,7 +112,7 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Under) -> str:
-        return f"\\hspace*{{1em}}{self.inline(value.text)}"
+        return f"\\hspace*{{1em}}{self.inline(content.Phrase(value.parts))}"
 
     @inline.register
     def _(self, value: content.Elsewhere) -> str:

@@ -264,7 +264,7 @@ def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
     for part, lines in zip(stability.subsystems, lines_by_part, strict=True):
         lines[:0] = _coefficients(part, lines, results.variable)
         yield Phrase((named(part.coordinates), ": ", lines[0]))
-        yield from map(Under, lines[1:])
+        yield from (Under((line,)) for line in lines[1:])
     reasons = (cause for part in stability.subsystems for cause in part.theory.verdict.reasons)
     # The names mean others.
     for reason in dict.fromkeys(cause for cause in reasons if cause.code is Because.OTHER_ANGLES):
