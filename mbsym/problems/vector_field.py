@@ -13,6 +13,7 @@ nothing depends are left out; constraints on positions are relations between tho
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations, islice
 from math import gcd, lcm, prod
@@ -56,13 +57,23 @@ def vector_field(
     """x' over QQ[parameters], with det(M) as a part of the denominator, and the way from the ring there.
 
     Parameters are those that occur in the equations and in ``also``, where ``images`` (by generator) take the place of
-    dependent ones; phases are variables where they may be ``driven``.  Square roots of numbers are parameters of the
-    field, with their squares, where it may be ``rooted``.  Raises NoClosedForm where M is singular, and where the time,
-    inputs, other roots or functions other than exponentials occur.
+    dependent ones; phases are variables where they may be ``driven``.  Where it may be ``rooted`` square roots of
+    numbers are parameters of the field, with their squares, and reciprocals of polynomials in positions are variables
+    if their relations are solved.  Raises NoClosedForm where M is singular, and where the time, inputs, other roots or
+    functions other than exponentials occur.
     """
-    state = _State(form, equations, images, driven, rooted)
+    tied = equations.constraints
+    if rooted and (tied is None or not tied.position_rank):  # else reciprocals may be tied by what ties positions
+        with suppress(NoClosedForm):
+            field, transfer = _of(_State(form, equations, images, driven, rooted, divided=True), also)
+            if field.are_solved:
+                return field, transfer
+    return _of(_State(form, equations, images, driven, rooted), also)
+
+
+def _of(state: _State, also: Sequence[Polynomial]) -> tuple[PolynomialField, Transfer]:
     variables = state.variables()
-    images, ring = state.images, form.ring
+    images, ring = state.images, state.ring
     relations = state.relations(variables)
     polynomials = [state.determinant, *variables.values()]
     fractions = [ring.fraction(p, state.kept) for p in polynomials]
@@ -115,10 +126,16 @@ class _State:
     """Generators of the ring as variables: how each moves, how it is called, what ties it to others."""
 
     def __init__(
-        self, form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial], driven: bool, rooted: bool
+        self,
+        form: SpeedForm,
+        equations: Equations,
+        images: Mapping[int, Polynomial],
+        driven: bool,
+        rooted: bool,
+        divided: bool = False,
     ) -> None:
         system, ring = form.system, form.ring
-        self.rooted = rooted
+        self.rooted, self.divided = rooted, divided
         self.ring, self.equations = ring, equations
         free, tied, self.rows = _free(form, equations, images)
         self.rates = {name: put_in(ring, rate, tied) for name, rate in form.rates.items()}
@@ -136,15 +153,21 @@ class _State:
 
     @property
     def kept(self) -> list[int]:
-        """Reciprocals that are variables, and no denominators: of exponentials, and of what stands under a root."""
+        """Reciprocals that are variables, and no denominators: of exponentials, positions, of what is under a root."""
         ring = self.ring
         reciprocals = (k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal")
         return [*(k for k in reciprocals if self._exponent(k) is not None), *self._inverse]
 
     @property
     def _inverse(self) -> list[int]:
-        """1/p, where p stands under the only root and its leading coefficient is 1, so that 1/p leads a relation."""
+        """1/p, where p stands under the only root and its leading coefficient is 1, so that 1/p leads a relation.
+
+        Where it is ``divided``, of all p in positions.
+        """
         ring = self.ring
+        if self.divided:
+            reciprocals = (k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal")
+            return [k for k in reciprocals if self._is_of_positions(ring.generators[k].argument)]
         squares = [ring.generators[k].argument for k in range(ring.spare) if self._is_root(k)]
         if len(squares) != 1 or any(
             g.kind == "parameter" and power for g, power in zip(ring.generators, squares[0].monomial(0), strict=True)
@@ -294,7 +317,11 @@ class _State:
         for k in variables:
             if ring.generators[k].kind == "sine":
                 found.append(ring.context.gen(k) ** 2 + ring.context.gen(self._partner(k)) ** 2 - 1)
-        found += [ring.context.gen(k) * ring.generators[k].argument - 1 for k in variables if k in self._inverse]
+        inverse = [k for k in variables if k in self._inverse]
+        beside = {k: self._moving(occurring([ring.generators[k].argument])) for k in inverse}
+        alone = [k for k in inverse if beside[k].isdisjoint(variables)]
+        found += [ring.context.gen(k) * ring.generators[k].argument - 1 for k in inverse if k not in alone]
+        between = self._between_reciprocals(alone)
         names = {ring.generators[k].name for k in variables}
         for (name, components), (other, others) in self.equations.products:
             if names.issuperset((*components, *others)):
@@ -307,8 +334,27 @@ class _State:
         tied = self._between_exponentials(exponentials)
         angles = [k for k in variables if ring.generators[k].kind == "sine" and ring.generators[k].argument is not None]
         apart = {*exponentials, *angles, *map(self._partner, angles)}
-        self._refuse_dependent([*exponentials, *angles], [k for k in variables if k not in apart], len(tied))
-        return [*found, *tied]
+        left = [k for k in variables if k not in apart and k not in alone]
+        self._refuse_dependent([*exponentials, *angles, *alone], left, len(tied) + len(between))
+        return [*found, *tied, *between]
+
+    def _between_reciprocals(self, places: Sequence[int]) -> list[Polynomial]:
+        """sum_k c_k prod_(j != k) w_j  of the reciprocals w of positions p, none of which is a variable, with
+
+        sum_k c_k p_k = 0.  Raises NoClosedForm where there are several such sums.
+        """
+        ring, parts = self.ring, [self.ring.generators[k].argument.to_dict() for k in places]
+        rows = [[part.get(m, fmpq(0)) for part in parts] for m in sorted({m for part in parts for m in part})]
+        if not rows or (count := len(places) - fmpq_mat(rows).rank()) == 0:
+            return []
+        if count > 1:
+            raise NoClosedForm("reciprocals of positions are related in several ways")
+        whole = [int((x * lcm(*(int(y.q) for y in row))).p) for row in rows for x in row]
+        column = [int(fmpz_mat(len(rows), len(places), whole).nullspace()[0][k, 0]) for k in range(len(places))]
+        held = [(ring.context.gen(k), c) for k, c in zip(places, column, strict=True) if c]
+        terms = (prod((x for x, _ in held if x is not w), start=ring.one) * c for w, c in held)
+        total = sum(terms, ring.zero)
+        return [total / total.leading_coefficient()]
 
     def _refuse_dependent(self, functions: Sequence[int], others: Sequence[int], tied: int) -> None:
         """Raises NoClosedForm where variables are functions of each other but for relations: ranks would mislead."""

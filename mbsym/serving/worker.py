@@ -122,16 +122,6 @@ def _system(task: Task) -> System:
     return system
 
 
-def _analysis(task: Task, system: System, usual: tuple[int, ...]) -> Analysis:
-    """Of the problems that a task wants, in its language."""
-    from mbsym.analysis import Analysis
-    from mbsym.analysis.given import chosen
-
-    analysis = Analysis(system, tuple(sorted(task.get("problems") or ())) or chosen(system, usual))
-    analysis.language = task.get("language") or ""
-    return analysis
-
-
 def _rational(value: object, words: str) -> Fraction:
     """Raises Refused, with these words."""
     try:
@@ -144,11 +134,11 @@ def _rational(value: object, words: str) -> Fraction:
 
 
 def _derive(task: Task, system: System) -> Iterator[Message]:
-    from mbsym.analysis import USUAL_PROBLEMS
     from mbsym.report.html.report import title
+    from mbsym.report.whole_run import analysis_of
 
-    analysis = _analysis(task, system, USUAL_PROBLEMS)
-    problems = analysis.problems
+    analysis = analysis_of(system, task.get("problems") or None, ("html",))
+    analysis.language, problems = task.get("language") or "", analysis.problems
     yield {"kind": "plan", "sections": [[str(x), title(analysis, x)] for x in _plan(analysis)]}
     yield _section(analysis, "system", ())
     done: list[int] = []
@@ -202,14 +192,13 @@ def _section(analysis: Analysis, part: str | int, problems: tuple[int, ...]) -> 
 
 def _export(task: Task, system: System) -> Iterator[Message]:
     """All files of the formats asked for, as ``mbsym run`` makes them."""
-    from mbsym.report.targets import FORMATS, shown_by
-    from mbsym.report.whole_run import derive_all, lost, rendered_all
+    from mbsym.report.targets import FORMATS
+    from mbsym.report.whole_run import analysis_of, lost, silent, whole_run
 
     formats = [name for name in task["formats"] if name in FORMATS]
-    analysis = _analysis(task, system, shown_by(formats))
-    said: list[str] = []
-    early = derive_all(analysis, formats, said.append)
-    files = rendered_all(analysis, formats, said.append, files=early)
+    analysis = analysis_of(system, task.get("problems") or None, formats)
+    analysis.language = task.get("language") or ""
+    files = whole_run(analysis, formats, silent)
     words = [f"{where}: {failure.reason}" for where, failure in lost(analysis, files)]
     words += [f"self-check failed: {check.name}: {check.detail}" for check in analysis.checks if check.failed]
     yield {

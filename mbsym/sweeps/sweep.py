@@ -22,8 +22,9 @@ from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Expression, number, text
 from mbsym.maps.section import Axis, Section, Unfit, section
 from mbsym.model.system import System
+from mbsym.numerics.ensembles.variation import Points
 from mbsym.numerics.scenario import scenario
-from mbsym.sweeps.points import Measure, Points
+from mbsym.sweeps.points import Measure
 
 # What a sweep is asked for, as plain data that another machine can read, and the measure that it means.
 

@@ -218,6 +218,7 @@ def test_exponentials_have_one_relation():
         ("exp(sqrt(3)*x - y)", "constant sqrt(3) occurs"),
         ("exp(sqrt(3)*x - y) + exp(x)", "constant sqrt(3) occurs"),
         ("exp(t*x)", "the time occurs"),
+        ("1/x + exp(x)", "exp(x), x are functions of each other"),
         ("exp(exp(x))", "function exp occurs"),
         (
             "sqrt(x) + sqrt(y) + sqrt(x*y)",
@@ -365,6 +366,62 @@ def test_two_centres_keep_eulers_integral():
         rate = field.reduced(field.derivative(top) * bottom - top * field.derivative(bottom))
         assert (rate == 0) is (sign == 1)
     assert field.reduced(near**2 - far**2) == -4 * a * x
+
+
+def test_calogeros_particles_keep_a_cubic_integral():
+    """p1 p2 p3 - g (p1/(x2 - x3)^2 + ...) of 1/(xi - xj)^2: J. Moser, Adv. Math. 16 (1975); another sign is refuted.
+
+    Of w = 1/(x - y), u = 1/(y - z), v = 1/(x - z) positions are no variables: w u - (w + u) v = 0.
+    """
+    text = POINT.format(place="x, y, z", names="x, y, z", potential="g/(x - y)**2 + g/(y - z)**2 + g/(z - x)**2")
+    found, field = _integrals(text)
+    assert set(field.variables) == {"x_dot", "y_dot", "z_dot", "1/(x - y)", "1/(y - z)", "1/(x - z)"}
+    g, p, q, r = map(field.generator, ("g", "x_dot", "y_dot", "z_dot"))
+    w, u, v = (field.generator(f"1/({pair})") for pair in ("x - y", "y - z", "x - z"))
+    assert [field.reduced(w * u - w * v - u * v)] == [0]
+    for sign in (1, -1):
+        moser = p * q * r - sign * g * (p * u**2 + q * v**2 + r * w**2)
+        assert (field.reduced(field.derivative(moser)) == 0) is (sign == 1)
+    assert (found.complete, found.independent, [one.weight for one in found.generators]) == (True, 3, [1, 2, 3])
+
+
+def test_positions_that_are_divided_by():
+    """Winternitz and others (1967): k (x^2 + y^2) + a/x^2 + b/y^2 has three independent ones; one is by hand."""
+    potential = "k*(x**2 + y**2) + a/x**2 + h/y**2"
+    text = POINT.format(place="x, y, 0", names="x, y", potential=potential).replace("a: positive", "a: real")
+    there = setting(mbsym.loads(text), driven=True)
+    found, field = integrals_of(there, 4), there.field
+    a, h, u, v, x, y, p, q = map(field.generator, ("a", "h", "x_dot", "y_dot", "x", "y", "1/x", "1/y"))
+    assert (list(field.relations), field.units) == ([x * p - 1, y * q - 1], {"1/x", "1/y"})
+    turning = (x * v - y * u) ** 2 + 2 * (a * y**2 * p**2 + h * x**2 * q**2)
+    assert field.reduced(field.derivative(turning)) == 0
+    assert (found.complete, found.independent) == (True, 3)
+    assert found.rational == ()
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [
+        "1/(x - y)**2 + 1/(y - z)**2 + 1/(z - x)**2 + x**2 + y**2 + z**2",  # reciprocals share their positions
+        "1/x + 1/(x - a)",  # functions of each other
+        "1/(exp(x) + 1)",
+    ],
+)
+def test_where_reciprocals_are_no_variables_they_are_denominators(potential):
+    """As without: the energy is a quotient, and nothing is denied beyond what is said."""
+    text = POINT.format(place="x, y, z", names="x, y, z", potential=potential)
+    there = setting(mbsym.loads(text), driven=True)
+    assert not any(name.startswith("1/") for name in there.field.variables)
+    assert there.rational
+
+
+def test_what_constraints_tie_is_no_reciprocal_by_itself():
+    """On a sphere 1/z is tied to x and y: without that relation integrals on it would be denied."""
+    text = POINT.format(place="x, y, z", names="x, y, z", potential="k*x**2 + h*y**2 + g*z")
+    text += "constraints:\n  - relation: x**2 + y**2 + z**2 = 1\ndependent: [z]\n"
+    field = setting(mbsym.loads(text), driven=True).field
+    x, y, z = map(field.generator, "xyz")
+    assert field.relations == (x**2 + y**2 + z**2 - 1,)
 
 
 def test_a_root_of_a_unit_vector_is_refused():

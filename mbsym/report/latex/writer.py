@@ -584,8 +584,9 @@ def spared(text: str) -> str:
     return re.sub(r"\n{3,}", "\n\n", text)
 
 
-def is_cyrillic(system: System) -> bool:
-    texts = [system.name, system.description, system.source, *(item.meaning for item in system.parameters)]
+def is_cyrillic(system: System, word: str) -> bool:
+    """Whether the report, whose language has that word, or what the description says has Cyrillic letters."""
+    texts = [word, system.name, system.description, system.source, *(item.meaning for item in system.parameters)]
     texts += [item.meaning for item in system.prescribed] + [body.name for body in system.bodies]
     texts += [claim.place for claim in system.claims]
     return any("\u0400" <= c <= "\u045f" for text in texts for c in text)

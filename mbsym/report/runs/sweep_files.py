@@ -13,12 +13,12 @@ import numpy as np
 
 from mbsym.expressions.message import Counted, Message
 from mbsym.model.system import System
-from mbsym.numerics.ensembles.variation import Grid, Variation
+from mbsym.numerics.ensembles.variation import Grid, Points, Variation
 from mbsym.report.documents import ensemble as doc
 from mbsym.report.documents.base import file_of, finite
 from mbsym.report.runs.trajectory_csv import header, rows
 from mbsym.sweeps.judged import VERDICT
-from mbsym.sweeps.points import Column, Points
+from mbsym.sweeps.points import Column
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
 
 Part = tuple[Any, Mapping[str, Any]]

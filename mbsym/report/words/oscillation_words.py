@@ -136,7 +136,7 @@ _EXPECTED = "[[expected]] or more is expected of a right solution to this order,
 _TOO_SLOW = (
     "The errors of [[names]] fall more slowly than expected: [[small]] is too large there, or something is wrong."
 )
-_NOT_MEASURED = "The error of the periodic solution was not measured: [[why]]."
+_NOT_MEASURED = "The error of this solution was not measured: [[why]]."
 _NONE = "No periodic solution was expanded in powers of [[small]]: [[why]]."
 _NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations."
 
