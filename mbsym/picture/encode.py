@@ -139,6 +139,7 @@ def _body(body: Drawn) -> dict[str, Any]:
 def _closure(closure: Closure) -> dict[str, Any]:
     return {
         "coordinates": list(closure.coordinates),
+        "sizes": numbers(closure.sizes),
         "rows": list(closure.rows),
         "slopes": [list(row) for row in closure.slopes],
         "names": list(closure.names),

@@ -256,7 +256,7 @@ class _Paper:
         far = max((dist(a, b) for a in flat for b in flat), default=0.0)
         reach = [hypot(*shape.size) for body in self.picture.bodies for shape in body.shapes]
         far = max([far, *reach])
-        return far if far > 1e-9 or not isfinite(far) else 1.0
+        return far if far > 1e-9 * self.picture.extent or not isfinite(far) else 1.0
 
     @staticmethod
     def _rounded(value: float) -> float:

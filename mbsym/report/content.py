@@ -238,6 +238,13 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Under:
+    """A line of a fact that belongs to the last one that is under none."""
+
+    text: Inline
+
+
+@dataclass(frozen=True)
 class Elsewhere:
     """Where a reader finds what is too long to stand here: the ``problem`` of a report, or the command that prints it.
 
@@ -299,7 +306,20 @@ class Citation:
 Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` that is no message is the same in every language: a name, punctuation.
 Inline = (
-    Said | Strong | Graded | Link | Elsewhere | Numbered | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+    Said
+    | Strong
+    | Graded
+    | Link
+    | Under
+    | Elsewhere
+    | Numbered
+    | Phrase
+    | Emphasis
+    | Verbatim
+    | Unit
+    | Citation
+    | Math
+    | str
 )
 
 

@@ -81,7 +81,7 @@ class Writer:
         if isinstance(value, content.Phrase):
             for part in value.parts:
                 yield from self.pieces(part)
-        elif isinstance(value, content.Link):
+        elif isinstance(value, content.Link | content.Under):
             yield from self.pieces(value.text)
         elif isinstance(value, Said):
             parts = (
@@ -167,7 +167,8 @@ class Writer:
     @inline.register(content.Strong)
     @inline.register(content.Graded)
     @inline.register(content.Link)
-    def _(self, value: content.Strong | content.Graded | content.Link) -> str:
+    @inline.register(content.Under)
+    def _(self, value: content.Strong | content.Graded | content.Link | content.Under) -> str:
         return self.inline(value.text)
 
     @inline.register(content.Emphasis)
@@ -412,8 +413,9 @@ class Writer:
         width = max(map(len, labels), default=0) + 2
         for label, fact in zip(labels, value.items, strict=True):
             for k, said in enumerate(fact.lines):
-                name = (label.ljust(width), _style(fact.name) or TITLE) if k == 0 else (" " * width, "")
-                yield Line((name, *self._shown((said,))), margin=width + 2)
+                deeper = width + 2 * isinstance(said, content.Under)
+                name = (label.ljust(deeper), _style(fact.name) or TITLE) if k == 0 else (" " * deeper, "")
+                yield Line((name, *self._shown((said,))), margin=deeper + 2)
 
     @block.register
     def _(self, value: content.Cited) -> Iterator[Line]:

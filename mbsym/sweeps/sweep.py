@@ -67,7 +67,7 @@ def measure_of(system: System, sweep_request: Asked) -> Measure:
     Raises Unfit (with all complaints) where the parameters fit no section, Failure where it cannot be derived.
     """
     if sweep_request.time is not None and sweep_request.formula is not None:
-        from mbsym.sweeps.simulated import SimulatedMeasure
+        from mbsym.sweeps.roots import SimulatedMeasure
 
         overrides = {name: number(value) for name, value in sweep_request.settings.items()}
         motion, said = scenario(system, overrides, assumed=False), text(sweep_request.formula)

@@ -854,3 +854,26 @@ def test_irrational_values_are_taken_exactly(tmp_path: Path) -> None:
     refused = CliRunner().invoke(command_of(STUDY), [str(file), "--vary", "k=1:2"])
     assert refused.exit_code == 2
     assert "no rational number for x0" in refused.stderr
+
+
+@pytest.mark.parametrize("place", ["X", "X + Y"])
+def test_a_semidefinite_damper_is_judged_alike_in_other_coordinates(place: str) -> None:
+    """V = y^2/2 - x/2 - cos x, friction on x alone, at x = pi/6 (a strict minimum: stable), with x = X or x = X + Y."""
+    found = mbsym.loads(
+        "mbsym: 1\nname: torque\nbodies:\n"
+        f"  - {{name: p, attached to: 0, connection point: ['{place}', Y, 0], mass: 1, coordinates: [X, Y]}}\n"
+        f"loads:\n  - potential: Y**2/2 - ({place})/2 - cos({place})\n"
+        f"  - rayleigh: ({place.replace('X', 'X_dot').replace('Y', 'Y_dot')})**2/2\nmotion: {{}}\n"
+    ).equilibria
+    assert [str(rest.verdict.word) for rest in found.equilibria] == ["stable", "unstable"]
+
+
+def test_a_rest_under_a_constraint_without_exact_values_is_listed() -> None:
+    """V = e^x - x + y^2 at x = y = 0, a minimum; u = x + y^2 beside it: nothing breaks down."""
+    found = mbsym.loads(
+        "mbsym: 1\nname: minimum\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}\n"
+        "  - {name: q, attached to: 0, connection point: [u, 0, 0], mass: 1, coordinates: [u]}\n"
+        "loads:\n  - potential: exp(x) - x + y**2\nconstraints:\n  - relation: u = x + y**2\nmotion: {}\n"
+    ).equilibria
+    assert [str(rest.verdict.word) for rest in found.equilibria] == ["stable"]

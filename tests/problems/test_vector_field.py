@@ -208,13 +208,15 @@ def test_exponentials_have_one_relation():
     ("potential", "why"),
     [
         ("exp(x) + exp(x + a)", "constant factor"),
-        ("exp(x) + exp(y) + exp(x + y) + exp(x - y) + exp(2*x)", "several ways"),
+        ("exp(6*x) + exp(10*x) + exp(15*x)", "several ways"),
+        ("exp(2*x) + exp(3*x) + exp(-2*x)", "several ways"),
         ("x*log(1 + x**2)", "function log"),
         ("sqrt(2)*x**2", "constant sqrt(2) occurs"),
         ("exp(x) + x**2", "exp(x), x are functions of each other"),
         ("exp(x) + exp(a*x)", "functions of each other"),
         ("exp(a)*x**2", "constant exp(a) occurs"),
         ("exp(sqrt(3)*x - y)", "constant sqrt(3) occurs"),
+        ("exp(sqrt(3)*x - y) + exp(x)", "constant sqrt(3) occurs"),
         ("exp(t*x)", "the time occurs"),
         ("exp(exp(x))", "function exp occurs"),
         (
@@ -249,8 +251,67 @@ def test_todas_integrals():
     assert found.generators[-1].polynomial in (henon, -henon)
 
 
+#: Y = sqrt(3) y makes it Toda's lattice: M. Henon, Integrals of the Toda lattice, Phys. Rev. B 9 (1974).
+HENON = POINT.format(
+    place="x, y, 0", names="x, y", potential="(exp(2*x + 2*sqrt(3)*y) + exp(2*x - 2*sqrt(3)*y) + exp(-4*x))/24"
+)
+
+
+def test_todas_third_integral_in_henons_form():
+    """8 x'(x'^2 - 3 y'^2) + ..., Henon's I, here with x and y the other way round, in the field of sqrt(3)."""
+    found, field = _integrals(HENON)
+    s, u, v, a, b, c = map(field.generator, ("sqrt(3)", *field.variables))
+    assert field.relations == (a * b * c - 1,)
+    by_hand = 8 * v * (v**2 - 3 * u**2) - s * (a - b) * u + (a + b - 2 * c) * v
+    assert field.derivative(by_hand) == 0
+    assert field.derivative(by_hand + 2 * s * (a - b) * u) != 0  # the other root of 3 is another system
+    (new,) = found.new
+    assert new.polynomial in (by_hand, -by_hand)
+    assert found.complete
+    assert (found.independent, field.free_parameters) == (2, ())
+
+
+@pytest.mark.parametrize(("number", "count"), [("2", 0), ("3", 1), ("5", 0), ("12", 0), ("3/4", 0), ("27/9", 1)])
+def test_of_other_numbers_in_the_place_of_3_there_is_no_third_integral(number, count):
+    """Of exponents v_i there is none where some 2 v_i v_j/v_i^2 is no integer (M. Adler and P. van Moerbeke, 1982)."""
+    found, _ = _integrals(HENON.replace("sqrt(3)", f"sqrt({number})"))
+    assert (found.complete, len(found.new)) == (True, count)
+
+
+def test_roots_of_numbers_are_independent():
+    """Two oscillators, sqrt(2) and sqrt(3) in their springs, with x and y turned by 45 degrees: both energies."""
+    potential = "sqrt(2)*(x + y)**2 + sqrt(3)*(x - y)**2 + (x + y)**4"
+    found, field = _integrals(POINT.format(place="x, y, 0", names="x, y", potential=potential))
+    two, three, u, v, x, y = map(field.generator, ("sqrt(2)", "sqrt(3)", *field.variables))
+    energies = [(u + v) ** 2 / 4 + two * (x + y) ** 2 + (x + y) ** 4, (u - v) ** 2 / 4 + three * (x - y) ** 2]
+    assert all(field.derivative(one) == 0 for one in energies)
+    assert (found.complete, len(found.generators), found.independent) == (True, 1, 1)  # the other is of degree 4
+    assert [f.polynomial in (4 * energies[1], -4 * energies[1]) for f in found.generators] == [True]
+
+
+@pytest.mark.parametrize(
+    ("potential", "variables"),
+    [
+        ("cosh(x) + cosh(y)", ["exp(x)", "exp(-x)", "exp(y)", "exp(-y)"]),
+        ("cosh(x) + cosh(2*x) + y**2", ["exp(x)", "exp(-x)"]),
+        ("exp(x) + exp(y) + exp(x + y) + exp(x - y) + exp(2*x)", ["exp(x)", "exp(y)", "exp(-y)"]),
+    ],
+)
+def test_exponents_that_span_a_lattice_are_told_by_a_basis(potential, variables):
+    """Of separate parts the energies are kept, and nothing that was none becomes an integral."""
+    text = POINT.format(place="x, y, 0", names="x, y", potential=potential)
+    loaded = mbsym.loads(text)
+    field, transfer = vector_field(loaded.form, loaded.equations)
+    assert [name for name in field.variables if name.startswith("exp(")] == variables
+    pairs = [(name, f"exp(-{name[4:]}") for name in variables if f"exp(-{name[4:]}" in variables]
+    assert list(field.relations) == [field.generator(a) * field.generator(b) - 1 for a, b in pairs]
+    top, bottom = transfer.fraction(loaded.integrals[0].formula.polynomial)
+    assert bottom.is_constant()
+    assert field.reduced(field.derivative(top)) == 0
+
+
 def _integrals(text, values=None):
-    there = setting(mbsym.loads(text), values)
+    there = setting(mbsym.loads(text), values, driven=True)
     return integrals_of(there, 3), there.field
 
 

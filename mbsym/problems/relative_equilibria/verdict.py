@@ -160,13 +160,11 @@ class LinearAtRest:
             try:
                 parts = [[[look(x) for x in row] for row in rows_] for rows_ in self.matrices]
                 jacobian = [[look(x) for x in row.partials] for row in self.rest.rows]
-                table = [
-                    [*column, -look(f)]
-                    for column, f in zip(zip(*jacobian, strict=True), self.rest.at_rest, strict=True)
-                ]
+                acting = [look(f) for f in self.rest.at_rest]
                 bends = [[[look(x) for x in line] for line in bend] for bend in self.bends]
-                if any(x is None for rows_ in (*parts, jacobian, table, *bends) for row in rows_ for x in row):
+                if any(x is None for rows_ in (*parts, jacobian, [acting], *bends) for row in rows_ for x in row):
                     return undecided(Because.NOT_ENCLOSED)
+                table = [[*column, -f] for column, f in zip(zip(*jacobian, strict=True), acting, strict=True)]
                 columns = list(range(n))
                 weigh: dict[str, Any] = {}
                 if place.modulus is None:  # balls: what may be 0 divides nothing

@@ -23,17 +23,13 @@ from mbsym.sweeps.statistics import LEVEL, Share, Totals
 
 Part = tuple[Any, Mapping[str, Any]]
 
-#: From so many numbers on the decimals come from machine code.
-_MANY = 100_000
-
 
 def sweep_csv(names: Sequence[str], columns: Sequence[Column], parts: Iterable[Part]) -> Iterator[str]:
     """The file, a chunk after the other; ``parts`` are (points, columns)."""
     yield header([*names, *(column.name for column in columns)])
     for points, measured in parts:
         numbers = [*points, *(measured[column.name] for column in columns if not column.whole)]
-        many = len(numbers) * points.shape[1] >= _MANY
-        text = rows([np.asarray(row, dtype=float) for row in numbers], many)
+        text = rows([np.asarray(row, dtype=float) for row in numbers])
         lines = text.replace("nan", "").split("\n")[:-1]
         tails = [_told(column, measured[column.name]) for column in columns if column.whole]
         if tails and len(tails) == len(columns):  # words and whole numbers alone: they come last anyway

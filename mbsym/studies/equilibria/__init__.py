@@ -66,7 +66,7 @@ class Request:
         Axis | None, Range("NAME=LOW:HIGH", "Branches over one parameter: counts, bifurcations, stability.")
     ] = None
     format: Annotated[tuple[str, ...], formats("With --vary, files to write.", FORMATS, usual=",".join(FORMATS))] = ()
-    language: Annotated[str | None, language("With --vary, of picture and branches.tex: en, ru, es.")] = None
+    language: Annotated[str | None, language("With --vary, of picture and branches.tex")] = None
 
     @property
     def files(self) -> tuple[str, ...]:
