@@ -86,7 +86,7 @@ class Request:
     )
     integral: Annotated[str | None, Text("LIST", "Integrals over the time, by their rates: psi=q*gamma1,s=x*y.")] = None
     format: Annotated[tuple[str, ...], formats("Draw figures: svg, pdf, png.", FORMATS)] = ()
-    language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
+    language: Annotated[str | None, language("Of figures")] = None
 
 
 def _leading(request: Request) -> tuple[str, ...]:

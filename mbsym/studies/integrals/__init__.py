@@ -170,9 +170,15 @@ def _lines(derived: Found) -> Iterator[Line | Block]:
 
 
 def _sections(derived: Found) -> Iterator[tuple[str, Iterator[str]]]:
-    from mbsym.studies.integrals.cases import along_lines, cases_lines
-    from mbsym.studies.integrals.levels import other_lines
-    from mbsym.studies.integrals.relations import darboux_lines, darboux_values, level_lines, relation_lines
+    from mbsym.studies.integrals.relations import (
+        along_lines,
+        cases_lines,
+        darboux_lines,
+        darboux_values,
+        level_lines,
+        other_lines,
+        relation_lines,
+    )
 
     there, integrals, relations = derived.there, derived.integrals, derived.relations
     if derived.line is not None:
