@@ -4,10 +4,11 @@
 
 Variables are the velocities or speeds u (under constraints in velocities those that are independent, in the equations
 without multipliers), and what X holds of positions, by itself or in functions: coordinates, unit vectors and
-quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the exponent, and the
-relation between those whose exponents are dependent; square roots, r^2 = p, r' = r p'/(2 p), and with one of them alone
-1/p; phases that are driven at a rate.  Each variable brings in what its own derivative holds.  Positions on which
-nothing depends are left out; constraints on positions are relations between those that are left, or give one by others.
+quaternions; the sine and cosine of an angle, with s^2 + c^2 = 1; exponentials, e' = e a' with a the exponent, those of
+a basis of the lattice that exponents span, or one relation between them; square roots, r^2 = p, r' = r p'/(2 p), and
+with one of them alone 1/p; for problem 9 reciprocals w = 1/p, w' = -w^2 p'; phases that are driven at a rate. Each
+variable brings in what its own derivative holds. Positions on which nothing depends are left out; constraints on
+positions are relations between those that are left, or give one by others.
 """
 
 from __future__ import annotations
