@@ -15,7 +15,7 @@ from scipy.special import ellipj, ellipk
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.accuracy import ErrorEstimate
-from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.interface import Breakdown, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning import pilot, planning
 from mbsym.numerics.planning import plan_items as plan_bounds
@@ -392,6 +392,24 @@ def test_a_short_push_is_not_stepped_over_and_no_coarser_setting_is_said_to_do()
     assert error <= plan.bound.total
     assert plan.more is not None
     assert plan.more.seconds is None or plan.more.seconds >= 0.9 * plan.seconds
+
+
+def test_a_coarse_look_that_breaks_down_ends_no_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between two stiff walls a run at 1e-6 missed a switch, one at 1e-10 does not; a motion that ends does in both."""
+    places, looks = pilot.places, []
+
+    def missed(method: Any, dynamics: Any, setting: Setting, end: float) -> Any:
+        looks.append(setting.tolerance)
+        if len(looks) == 1 or end > 5:
+            raise Breakdown("switching without end", "a switch was missed", 1.0, np.zeros(2))
+        return places(method, dynamics, setting, end)
+
+    monkeypatch.setattr(planning, "places", missed)
+    given = described(PENDULUM)
+    assert planned(given, Accuracy(1e-5), np.linspace(0, 5, 101)).reached
+    assert looks[1] < looks[0]
+    with pytest.raises(Breakdown, match="a switch was missed"):
+        planned(given, Accuracy(1e-5), np.linspace(0, 6, 101))
 
 
 def test_the_python_interface_plans_and_runs() -> None:
