@@ -412,6 +412,21 @@ def test_a_coarse_look_that_breaks_down_ends_no_plan(monkeypatch: pytest.MonkeyP
         planned(given, Accuracy(1e-5), np.linspace(0, 6, 101))
 
 
+def test_a_reference_whose_coarse_runs_break_down_is_a_finer_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor is a setting taken that breaks down."""
+    whole = pilot.trial_of
+
+    def broken(method: Any, dynamics: Any, setting: Setting, *more: Any) -> Any:
+        found = whole(method, dynamics, setting, *more)
+        coarse = (setting.tolerance or 0) > 1e-8
+        return replace(found, ended=Breakdown("switching without end", "", 1.0, np.zeros(2))) if coarse else found
+
+    monkeypatch.setattr(pilot, "trial_of", broken)
+    plan = planned(described(PENDULUM), Accuracy(1e-5), np.linspace(0, 5, 101))
+    assert plan.reached
+    assert plan.setting.tolerance is None or plan.setting.tolerance <= 1e-8
+
+
 def test_the_python_interface_plans_and_runs() -> None:
     plan = mbsym.plan(mbsym.loads(PENDULUM, ()), 10, {"theta": 1e-5})
     assert [bound.quantity for bound in plan.bounds] == ["theta"]
