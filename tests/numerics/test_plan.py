@@ -15,6 +15,7 @@ from scipy.special import ellipj, ellipk
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.accuracy import ErrorEstimate
+from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning import pilot, planning
@@ -425,6 +426,29 @@ def test_a_reference_whose_coarse_runs_break_down_is_a_finer_one(monkeypatch: py
     plan = planned(described(PENDULUM), Accuracy(1e-5), np.linspace(0, 5, 101))
     assert plan.reached
     assert plan.setting.tolerance is None or plan.setting.tolerance <= 1e-8
+
+
+def test_what_float64_has_no_room_for_is_measured_in_more_digits() -> None:
+    """A millimetre about a place a thousand kilometres away: x = 10^6 + cos(t/1000)/1000, by hand.
+
+    Float64 knows x to a ten-millionth of that: its finer runs drowned in steps, and "no run could be had to measure by".
+    """
+    text = """mbsym: 1
+name: far away
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: -1e-6*(x - 1e6)}
+initial: {x: 1000000.001}
+"""
+    times = np.linspace(0, 30_000, 101)
+    given = scenario(mbsym.loads(text).system)
+    plan = planned(given, Accuracy(1e-8), times)
+    assert plan.reached
+    assert plan.scalar == "extended"
+    speed = METHODS[plan.method].start(Dynamics(given), plan.setting, plan.scalar).fill(times)[1]
+    error = np.max(np.abs(speed + 1e-6 * np.sin(times / 1000))) / 1e-6
+    assert error <= plan.bound.total <= 1e-8
 
 
 def test_the_python_interface_plans_and_runs() -> None:

@@ -308,7 +308,10 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
         except Breakdown as ended:  # its steps fall below what rounding lets them be
             if ended.kind != Cause.STEP_LIMIT:
                 raise
-            return best
+            if best.known < inf or limit == most or scalar == EXTENDED or not _extended(bench, method):
+                return best
+            scalar, tolerance = EXTENDED, coarser  # in which there is room for them
+            continue
         apart, _ = bench.compared(before.states, now.states)
         if before.scalar != scalar:  # the initial state was rounded alike in all runs before: it shows here first
             rounding = max(rounding, apart * MORE_DIGITS)
