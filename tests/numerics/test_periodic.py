@@ -19,7 +19,7 @@ from mbsym.numerics.orbits import lyapunov, variational
 from mbsym.numerics.orbits.lyapunov import Parting, exponents
 from mbsym.numerics.orbits.periodic import Guess, NotFound, Orbit, periodic_orbit
 from mbsym.numerics.scenario import scenario
-from mbsym.report.runs.lyapunov_files import sentences
+from mbsym.report.runs.orbit_files import lyapunov_sentences as sentences
 from mbsym.report.runs.orbit_files import sentences as orbit_sentences
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values
