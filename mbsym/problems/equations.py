@@ -110,3 +110,18 @@ def convective_rate(scene: Scene, ring: Ring, x: Polynomial) -> Polynomial:
     for item in scene.system.prescribed:
         total = total + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
     return ring.reduce(total)
+
+
+def separate(scene: Scene, equations: Equations) -> list[list[str]]:
+    """The coordinates in sets, as many as there are, whose equations of motion know no others."""
+    ring, names = scene.ring, scene.system.coordinates
+    every = (*names, *scene.system.velocities)
+    owner = dict(zip(every, (*names, *names), strict=True))
+    parts = [{name} for name in names]
+    for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True):
+        joined = {name, *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every))}
+        joined |= {other for other, entry in zip(names, row, strict=True) if not entry.is_zero()}
+        touched = [part for part in parts if part & joined]
+        parts = [*(part for part in parts if part not in touched), set().union(*touched)]
+    ordered = [[name for name in names if name in part] for part in parts]
+    return sorted(ordered, key=lambda part: names.index(part[0]))
