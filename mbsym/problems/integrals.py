@@ -47,7 +47,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.kernel import kernel
-from mbsym.algebra.matrices import adjugate, determinant
+from mbsym.algebra.matrices import adjugate, determinant, united
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.message import Message, worded
@@ -215,15 +215,14 @@ def _energies_of_parts(scene: Scene, energy: Energy, equations: Equations) -> It
     ring, names = scene.ring, scene.system.coordinates
     every = (*names, *scene.system.velocities)
     owner = dict(zip(every, (*names, *names), strict=True))
-    parts = [{name} for name in names]
-
-    def joined_by(coordinates: set[str]) -> None:
-        touched = [part for part in parts if part & coordinates]
-        parts[:] = [part for part in parts if part not in touched] + ([set().union(*touched)] if touched else [])
-
-    for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True):
-        joined_by({name, *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every))})
-        joined_by({name, *(other for other, entry in zip(names, row, strict=True) if not entry.is_zero())})
+    parts = united(
+        {
+            name,
+            *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every)),
+            *(other for other, entry in zip(names, row, strict=True) if not entry.is_zero()),
+        }
+        for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True)
+    )
     if len(parts) == 1:
         return
     shares = [ring.zero for _ in parts]
