@@ -144,6 +144,8 @@ def symbol_values(
     Raises NoClosedForm where an amplitude is needed, not ``put`` in, and zero.
     """
     oscillation = solution.oscillation
+    if len(oscillation.phases) > 1:
+        raise NoClosedForm("a motion with several phases is not compared with runs")
     if base.system.speeds:
         seen = scenario_in_states(base)
         state = dict(zip((*seen.system.coordinates, *seen.system.velocities), seen.state, strict=True))

@@ -197,6 +197,31 @@ def test_loops_are_closed_for_the_slider_that_moves() -> None:
     assert not good
 
 
+CRANK = """
+mbsym: 1
+name: Crank and slider
+parameters: {{r: {r}, l: {l}}}
+bodies:
+  - {{name: crank, attached to: 0, rotation: {{axes: [3], angles: [phi]}}, mass centre: [r, 0, 0], mass: 1}}
+  - {{name: slider, attached to: 0, connection point: [s, 0, 0], coordinates: [s], mass: 1}}
+constraints:
+  - distance: {{between: [{{body: crank, point: [r, 0, 0]}}, {{body: slider, point: [0, 0, 0]}}], length: l}}
+"""
+
+
+@pytest.mark.parametrize("unit", [1e-10, 1.0, 1e10])
+def test_a_loop_is_closed_whatever_the_unit_of_length(unit: float) -> None:
+    """r = 1, l = 3, phi = 1: s = cos 1 + sqrt(9 - sin(1)^2), in any unit; ten per cent off is open."""
+    drawn = picture(of(CRANK.format(r=unit, l=3 * unit) + f"initial: {{phi: 0, s: {4 * unit}}}\n"))
+    assert drawn.closure is not None
+    there, good = closed(
+        drawn.program, drawn.closure, {"t": 0.0, "phi": 1.0, "s": 4 * unit, "phi_dot": 0, "s_dot": 0}, ("phi",)
+    )
+    assert good
+    assert there["s"] == pytest.approx(unit * (np.cos(1) + np.sqrt(9 - np.sin(1) ** 2)), rel=1e-8)
+    assert max(gaps(drawn.program, drawn.closure, there | {"s": 1.1 * there["s"]})) > 1e-2
+
+
 def test_a_loop_that_cannot_be_closed_is_told() -> None:
     """A ground of 1.3: crank, coupler and rocker have 0.79 together."""
     text = (SYSTEMS / "four-bar.yaml").read_text(encoding="utf-8").replace("l1: 0.13", "l1: 1.3")

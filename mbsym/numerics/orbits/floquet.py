@@ -327,7 +327,7 @@ def series(code: Code, time: arb_series) -> list[Any]:
             case "multiply", [a, b]:
                 values[number] = a * b
             case "divide", [a, b]:
-                values[number] = a / b
+                values[number] = _quotient(a, b)
             case ("sinh" | "cosh" | "tanh") as name, [a]:
                 values[number] = _hyperbolic(name, a)
             case ("sin" | "cos" | "sqrt" | "exp" | "log" | "atan") as name, [a]:
@@ -337,10 +337,15 @@ def series(code: Code, time: arb_series) -> list[Any]:
     return [values[node.number] for node in code.outputs]
 
 
+def _quotient(a: arb_series, b: arb_series) -> arb_series:
+    """a/b, no finite number where b may vanish, as of balls: divided as a series it is an error."""
+    return arb_series([arb.nan()] * ctx.cap) if _coefficient(b, 0).contains(0) else a / b
+
+
 def _hyperbolic(name: str, x: arb_series) -> arb_series:
     up, down = x.exp(), (-x).exp()
     if name == "tanh":
-        return (up - down) / (up + down)
+        return _quotient(up - down, up + down)
     return (up - down) / 2 if name == "sinh" else (up + down) / 2
 
 

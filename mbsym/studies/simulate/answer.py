@@ -191,7 +191,6 @@ def _repeat(context: Asked, request: Command, run: simulation.Request) -> list[L
 def refused(error: Exception, context: Asked, request: Command) -> Refusal | None:
     """Of a run that cannot be begun."""
     from mbsym.algebra.failures import Failure, SingularPoint
-    from mbsym.numerics.closing import NothingMoves
     from mbsym.numerics.methods.interface import Breakdown
 
     say = Language(context.motion.system.language).say
@@ -205,9 +204,6 @@ def refused(error: Exception, context: Asked, request: Command) -> Refusal | Non
     if isinstance(error, SingularPoint):
         text = Message("singular at these values: [[why]]", why=error.reason)
         return Refusal(f"error[singular]: {say(text)}", Exit.BROKEN_DOWN, (nothing,))
-    if isinstance(error, NothingMoves):
-        hint = say(Message("hint: [[hint]]", hint=error.remedy))
-        return Refusal(f"error[{error.code}]: {say(error.reason)}", Exit.BROKEN_DOWN, (f"  {hint}", nothing))
     if isinstance(error, Failure):
         return not_closed(error, context.motion.system) or Refusal(
             f"error[no-program]: {say(Message('there is no program for these equations: [[why]]', why=error.reason))}",

@@ -126,7 +126,7 @@ def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
         drawn = [Curve(run.trajectory, rates_along(run), words) for run, words in legend]
         files |= curves(drawn, kinds, _fixed(result.few))
     elif kinds and len(ensemble.times) > 1:
-        files |= fan_charts(ensemble, kinds)
+        files |= fan_charts(ensemble, variations_of(request), kinds)
     how = (variations_of(request), request.seed, request.sampling)
     return files | {"ensemble.json": ensemble_json(ensemble, *how, list(files))}
 
