@@ -239,20 +239,9 @@ class Curve(Varied):
         """The derivative by the parameter.  Raises NoClosedForm where p stands in a root or a function."""
         for k in occurring([x]):
             g = self.ring.generators[k]
-            if g.argument is not None and self.index in self._reached(g.argument):
+            if g.argument is not None and self.index in self.ring.held([g.argument]):
                 raise NoClosedForm("[[name]] stands in a root or a function", name=self.parameter)
         return x.derivative(self.index)
-
-    def _reached(self, x: Polynomial) -> set[int]:
-        reached: set[int] = set()
-        pending = [*occurring([x])]
-        while pending:
-            k = pending.pop()
-            if k not in reached:
-                reached.add(k)
-                argument = self.ring.generators[k].argument
-                pending += [] if argument is None else [*occurring([argument])]
-        return reached
 
     # --- places on the curve ---
 

@@ -34,6 +34,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.matrices import united
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
@@ -117,11 +118,13 @@ def separate(scene: Scene, equations: Equations) -> list[list[str]]:
     ring, names = scene.ring, scene.system.coordinates
     every = (*names, *scene.system.velocities)
     owner = dict(zip(every, (*names, *names), strict=True))
-    parts = [{name} for name in names]
-    for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True):
-        joined = {name, *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every))}
-        joined |= {other for other, entry in zip(names, row, strict=True) if not entry.is_zero()}
-        touched = [part for part in parts if part & joined]
-        parts = [*(part for part in parts if part not in touched), set().union(*touched)]
+    parts = united(
+        {
+            name,
+            *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every)),
+            *(other for other, entry in zip(names, row, strict=True) if not entry.is_zero()),
+        }
+        for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True)
+    )
     ordered = [[name for name in names if name in part] for part in parts]
     return sorted(ordered, key=lambda part: names.index(part[0]))
