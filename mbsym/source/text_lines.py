@@ -27,7 +27,7 @@ def lines_of(text: str) -> Iterator[Scalar]:
 
 
 #: Greek letters, those of mathematical alphabets included, with the lowered digits behind them.
-_GREEK = re.compile("[\u0370-\u03ff\u1f00-\u1fff\U0001d6a8-\U0001d7cb][\u2080-\u2089]*")
+GREEK = re.compile("[\u0370-\u03ff\u1f00-\u1fff\U0001d6a8-\U0001d7cb][\u2080-\u2089]*")
 
 
 def _in_latin(line: Scalar) -> Scalar:
@@ -35,14 +35,13 @@ def _in_latin(line: Scalar) -> Scalar:
 
     Each letter of a name stands where the Greek one does.
     """
-    words = line.text.partition("meaning")[0]
     label, _ = label_of(line)
-    if _GREEK.search(words) is None or (label is not None and word_of(label.text) in FREE):
+    if GREEK.search(line.text) is None or (label is not None and word_of(label.text) in FREE):
         return line
     text, columns, end = "", list[int](), 0
-    for match in re.finditer(rf'"(?:[^"\\]|\\.)*"|{_GREEK.pattern}', words):
-        named = in_latin(match[0])
-        name = named if named.isalnum() and not match[0].startswith('"') else match[0]  # some letters have none
+    for match in re.finditer(rf'"(?:[^"\\]|\\.)*"|meaning.*|{GREEK.pattern}', line.text):
+        named = in_latin(match[0]) if GREEK.match(match[0]) else ""
+        name = named if named.isalnum() else match[0]  # some letters have none
         text += line.text[end : match.start()] + name
         columns += range(end, match.start())
         one_by_one = len(name) == len(match[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 import time
@@ -57,6 +58,29 @@ def test_both_spellings_lose_nothing(path: Path) -> None:
     assert good(to_text(system), "<string>") == system
     assert to_yaml(good(to_text(good(to_yaml(system))), "x.txt")) == to_yaml(system)
     assert to_text(good(to_yaml(system))) == to_text(system)
+
+
+@pytest.mark.parametrize(
+    "words", ["α 1", '"ω₀"; γ', "a (b", "null", "~", "Ω meaning β", "value = 2", "[α", "#1", "a=b"]
+)
+def test_words_and_names_of_files_are_kept_letter_by_letter(words: str, tmp_path: Path) -> None:
+    """Greek letters are names in the editor's text, an open bracket hides what follows, null is no text in YAML."""
+    file = words.replace('"', "'") + ".csv"
+    (tmp_path / file).write_text("0, 1\n1, 2\n", encoding="utf-8")
+    described = {
+        "mbsym": 1, "name": words, "description": words, "source": words,
+        "parameters": {"m": {"sign": "positive", "meaning": words, "value": 2}},
+        "inputs": {"F": {"meaning": words}},
+        "tables": {"f": {"file": file}},
+        "bodies": [{"name": "null", "mass": "m", "connection point": ["x", 0, 0], "coordinates": ["x"]}],
+        "loads": [{"generalized force": {"x": "F + f(t)"}}],
+        "claims": [{"claim": "momentum", "of": "x", "equals": "m*x_dot", "place": words}],
+    }  # fmt: skip
+    system, complaints = read(json.dumps(described), "x.yaml", tmp_path)
+    assert system is not None, list(complaints)
+    assert (system.name, system.claims[0].place, system.parameters[0].meaning) == (words, words, words)
+    assert read(to_yaml(system), "x.yaml", tmp_path)[0] == system
+    assert read(to_text(system), "x.txt", tmp_path)[0] == system
 
 
 class AsEditorsRead(yaml.SafeLoader):
