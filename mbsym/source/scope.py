@@ -281,18 +281,14 @@ class Scope:
         if name.endswith(ACCELERATION_ENDING) and "acceleration" not in allowed.kinds:
             none = "this claim holds none" if "abbreviation" in allowed.kinds else "they stand in no description"
             return Message("accelerations are what the equations are solved for; [[why]]", why=none)
-        known = [
-            other
-            for other, kind in self.kinds.items()
-            if kind in allowed.kinds and other not in self.beside and _IDENTIFIER.match(other)
-        ]
+        known = [other for other, kind in self.kinds.items() if kind in allowed.kinds and other not in self.beside]
         if "velocity" in allowed.kinds:
             known += [velocity_name(coordinate) for coordinate in self.of_kind("coordinate")]
         if "acceleration" in allowed.kinds:
             known += [acceleration_name(coordinate) for coordinate in self.of_kind("coordinate")]
         if self.kinds.get(without_velocity(name)) == "input":
             return "an input is any function of time: what depends on its rate is no load of this system"
-        close = did_you_mean(name, known)
+        close = did_you_mean(name, filter(_IDENTIFIER.match, known))
         if close is not None:
             return close
         if self.kinds.get(without_velocity(name)) == "prescribed":

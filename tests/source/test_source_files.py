@@ -9,6 +9,7 @@ import time
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -98,6 +99,32 @@ AsEditorsRead.yaml_implicit_resolvers = {
 def test_the_schema_accepts_good_files(path: Path, rewritten: bool) -> None:
     text = to_yaml(loaded(path)) if rewritten else path.read_text(encoding="utf-8")
     jsonschema.Draft202012Validator(json_schema()).validate(yaml.load(text, AsEditorsRead))
+
+
+@pytest.mark.parametrize("blank", ["", "  "])
+@pytest.mark.parametrize(
+    "place",
+    ["name", "description", "source", "label", "parameters m unit", "parameters m meaning", "latex m", "values m",
+     "bodies 0 name", "bodies 0 mass", "bodies 0 attached to", "tables f file", "claims 0 of", "claims 0 place"],
+)  # fmt: skip
+def test_the_schema_refuses_a_blank_text_as_the_reader_does(place: str, blank: str) -> None:
+    described: dict[str, Any] = {
+        "mbsym": 1, "name": "p", "parameters": {"m": {"sign": "positive"}}, "motion": {"x": 0}, "values": {"m": 1},
+        "bodies": [{"name": "b", "mass": "m", "connection point": ["x", 0, 0], "coordinates": ["x"]}],
+        "claims": [{"claim": "momentum", "of": "x", "equals": "m*x_dot"}], "latex": {},
+        "tables": {"f": {"columns": [1, 2]}} if place.startswith("tables") else {},
+    }  # fmt: skip
+    first, *keys = place.split(" ", 2)
+    path, holder = [first, *keys], described
+    for key in path[:-1]:
+        holder = holder[int(key) if key.isdecimal() else key]
+    holder[path[-1]] = blank
+    system, complaints = read(json.dumps(described), "x.yaml")
+    assert system is None
+    assert "missing-value" in {one.code for one in complaints}
+    schema = jsonschema.Draft202012Validator(json_schema())
+    guilty = [[str(part) for part in one.absolute_path] for one in schema.iter_errors(described)]
+    assert any(whole and path[: len(whole)] == whole for whole in guilty), guilty
 
 
 def test_the_schema_is_a_schema_and_refuses_unknown_keys() -> None:
