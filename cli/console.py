@@ -27,7 +27,7 @@ from mbsym.studies.study import Watch, unwatched
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.status import Status
+    from rich.progress import Progress
 
     from mbsym.expressions.place import Complaints
     from mbsym.model.system import System
@@ -216,36 +216,29 @@ def show(lines: Iterable[Line], indent: int = 2) -> None:
         tell(" " * indent, *parts, whole=whole, margin=None if margin is None else margin + indent)
 
 
+#: The bars that move, each with a thread of its own.
+_MOVING: list[Progress] = []
+
+
 @contextmanager
-def status(quiet: bool, text: str = "") -> Iterator[Callable[[str], None]]:
-    """A spinner on standard error that says what is being done; nothing where it is no terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda text: None
-        return
-    from rich.text import Text
-
-    with console(stderr=True).status(Text(escaped(text))) as spinner:
-        _TURNING.append(spinner)
-        try:
-            yield lambda text: spinner.update(Text(escaped(text)))
-        finally:
-            _TURNING.remove(spinner)
-
-
-#: The spinners that turn, each with a thread of its own.
-_TURNING: list[Status] = []
+def _moving(bar: Progress) -> Iterator[None]:
+    _MOVING.append(bar)
+    try:
+        yield
+    finally:
+        _MOVING.remove(bar)
 
 
 @contextmanager
 def paused() -> Iterator[None]:
-    """No spinner turns meanwhile: what copies the process wants it with one thread."""
-    for spinner in _TURNING:
-        spinner.stop()
+    """No bar moves meanwhile: what copies the process wants it with one thread."""
+    for bar in _MOVING:
+        bar.stop()
     try:
         yield
     finally:
-        for spinner in _TURNING:
-            spinner.start()
+        for bar in _MOVING:
+            bar.start()
 
 
 def read_description(path: Path, unconstrained: str = "", moving: str = "") -> System | None:
@@ -424,7 +417,7 @@ def watching(quiet: bool, name: str) -> Iterator[Watch]:
     bar = Progress(
         SpinnerColumn(), words, BarColumn(), TimeElapsedColumn(), console=console(stderr=True), transient=True
     )
-    with bar:
+    with bar, _moving(bar):
         task = bar.add_task(printable(name), total=None)
         said, shown = "", 0.0
 

@@ -17,7 +17,7 @@ import click
 
 from mbsym.expressions.message import Counted, Message, joined, worded
 from mbsym.expressions.parser import ascii_safe
-from mbsym.model.system import LANGUAGES
+from mbsym.model.system import LANGUAGES, ONE_OF_LANGUAGES
 from mbsym.report.documents import diff as doc
 from mbsym.report.language import Language
 from mbsym.studies.study import Exit
@@ -36,7 +36,7 @@ RESULTS = "results.json"
 @click.option("--check", is_flag=True, help="Exit code 1 unless both say the same.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of words.")
 @click.option("--all", "everything", is_flag=True, help="Print every change, however many there are.")
-@click.option("--language", metavar="NAME", help="en, ru or es.  [default: that of the descriptions]")
+@click.option("--language", metavar="NAME", help=f"{ONE_OF_LANGUAGES}.  [default: that of the descriptions]")
 def command(a: Path, b: Path, check: bool, as_json: bool, everything: bool, language: str | None) -> None:
     """Say exactly what changed from A to B.
 

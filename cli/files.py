@@ -26,7 +26,7 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, BinaryIO, TypeVar, cast
@@ -365,9 +365,30 @@ def alone(folder: Path) -> Iterator[bool]:
         os.close(handle)
 
 
+def unchanged(folder: Path, command: str) -> list[str]:
+    """The files of ``command`` in a folder that are as they were written."""
+    return [name for name, digest in delivered(folder, command).items() if digest_of(folder / name) == digest]
+
+
 def folder_for(file: Path, out: Path | None) -> Path:
     """Where the files about one description go: ``out`` itself, or a folder of its name in ``reports``."""
     return out if out is not None else REPORTS / safe_name(file.stem)
+
+
+def folders_for(files: Sequence[Path], out: Path | None) -> list[Path]:
+    """Where those about each of several go: folders of their names in ``out``, or in ``reports``, no two the same."""
+    if len(files) == 1:
+        return [folder_for(files[0], out)]
+    taken: set[str] = set()
+    folders = []
+    for file in files:
+        name, count = safe_name(file.stem), 1
+        while name.casefold() in taken:  # some file systems tell no capitals
+            name = safe_name(file.name if count == 1 else f"{file.name}-{count}")
+            count += 1
+        taken.add(name.casefold())
+        folders.append((out or REPORTS) / name)
+    return folders
 
 
 def safe_name(name: str) -> str:
@@ -385,11 +406,11 @@ def safe_name(name: str) -> str:
     return data[:_LONGEST_NAME].decode(errors="ignore") + "-" + hashlib.sha256(data).hexdigest()[:8]
 
 
-def prevented(file: Path, folder: Path | None, read: bool, options: Options) -> int:
+def prevented(file: Path, folder: Path | None, read: bool, options: Options, inside: Path | None = None) -> int:
     """The exit code where options are wrong (``read``: the description is not) or nothing can be written; else 0."""
     if options.refused(file if read else None) or not read:
         return Exit.BAD_INPUT
-    reason = "" if folder is None else obstacle(folder)
+    reason = "" if folder is None else obstacle(folder, inside)
     if reason:
         complain(file, Message("the results cannot be written: [[why]]", why=reason))
         return Exit.FAILED

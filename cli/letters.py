@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -22,11 +22,6 @@ _HELP = (
 
 def letters_option() -> click.Option:
     return click.Option(["--in", "letters"], metavar="LETTERS", help=_HELP)
-
-
-def with_letters(command: Any) -> Any:
-    """The option for a command that is written out."""
-    return click.option("--in", "letters", metavar="LETTERS", help=_HELP)(command)
 
 
 def read_letters(text: str | None, system: System, options: Options) -> tuple[str, ...] | None:

@@ -30,7 +30,7 @@ COMMANDS = {
     "new": Listed("new", "Begin a description: asks, or takes an example."),
     "examples": Listed("examples", "List the systems that come with mbsym, or copy them."),
     "check": Listed("check", "Validate descriptions without deriving anything."),
-    "run": Listed("run", "Derive the numbered problems and write reports."),
+    "run": Listed("mbsym.studies.run", "Derive the numbered problems and write reports."),
     "batch": Listed("batch.command", "Derive folders of descriptions: in parallel, only what changed."),
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),

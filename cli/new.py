@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym.expressions.message import Message
-from mbsym.model.system import LANGUAGES
+from mbsym.model.system import LANGUAGES, ONE_OF_LANGUAGES
 from mbsym.report.language import Language
 from mbsym.source.examples import example_names
 from mbsym.studies.study import Exit
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     shell_complete=among(example_names),
     help="Begin with one of the shipped systems instead of questions.",
 )
-@click.option("--language", metavar="NAME", help="Of its reports, and of the questions: en, ru or es.")
+@click.option("--language", metavar="NAME", help=f"Of its reports, and of the questions: {ONE_OF_LANGUAGES}.")
 def command(name: str, like: str | None, language: str | None) -> None:
     """Write NAME.yaml, a commented description that runs as it is.
 

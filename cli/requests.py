@@ -24,9 +24,11 @@ from mbsym.studies.request import (
     Number,
     Parsed,
     Place,
+    Problems,
     Quantity,
     Range,
     Ranges,
+    Scale,
     Settings,
     Share,
     Substitutions,
@@ -82,18 +84,23 @@ def _text(default: Any) -> str:
 def read_fields(
     file: Path, system: System | None, request: type, texts: Mapping[str, Any], options: Options
 ) -> tuple[dict[str, Any], Scenario | None, System | None]:
-    """(the values of all fields, the motion if it is one, the system with what is substituted in it).
+    """(the values of the fields that have ``texts``, the motion if it is one, the system with what is put into it).
 
     What cannot be read is None, and joins the complaints.
     """
     values: dict[str, Any] = {}
     scenario: Scenario | None = None
-    fields = fields_of(request)
+    fields = [field for field in fields_of(request) if field.name in texts]
     for field in (field for field in fields if isinstance(field.kind, Substitutions)):
         if system is not None and texts[field.name]:
             from mbsym_cli.assignments import with_settings
 
             system = with_settings(file, system, texts[field.name], options)
+    for field in (field for field in fields if isinstance(field.kind, Scale)):
+        if system is not None and texts[field.name] is not None and not options.complaints:
+            from mbsym_cli.assignments import in_scale
+
+            system = in_scale(system, texts[field.name], options)
     laws = {field.kind.laws for field in fields if isinstance(field.kind, Settings)}
     # Values are read when the laws of inputs are known, the others when the motion is.
     first = [field for field in fields if field.name in laws] + [x for x in fields if isinstance(x.kind, Settings)]
@@ -138,7 +145,13 @@ def _read(
             word = typed if typed is None or typed in kind.known else typed.lower()
             return None if word is None else options.word(field.option, word, kind.known, kind.what)
         case Words() as kind:
-            return options.words(field.option, typed, kind.known, kind.what, kind.every) if typed is not None else ()
+            return (
+                options.words(field.option, typed, kind.known, kind.what, kind.every, kind.all_of or None)
+                if typed is not None
+                else ()
+            )
+        case Problems():
+            return None if typed is None else options.problems(typed)
         case Substitutions():
             return dict.fromkeys(text.partition("=")[0].strip() for text in typed)
         case Parsed() as kind:

@@ -17,12 +17,14 @@ from click.core import ParameterSource
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint
-from mbsym.model.system import System
+from mbsym.expressions.safe import UNBROKEN
+from mbsym.model.system import LANGUAGES, System
 from mbsym.report.content import Block
 from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
+from mbsym.report.plain_writer import Line as Written
 from mbsym.report.plain_writer import Writer
-from mbsym.studies.request import fields_of, options_typed
+from mbsym.studies.request import Tongue, fields_of, options_typed
 from mbsym.studies.study import (
     Answer,
     Asked,
@@ -32,18 +34,21 @@ from mbsym.studies.study import (
     Line,
     NotFit,
     Remember,
+    Screen,
     Single,
     Study,
     Unfit,
     unremembered,
 )
-from mbsym_cli.beside import Beside
+from mbsym_cli.beside import Beside, beside
 from mbsym_cli.console import (
     HANGING,
     OutPath,
     asked_width,
     between_terms,
     complain,
+    defect,
+    described,
     diagnose,
     printable,
     read_description,
@@ -52,7 +57,8 @@ from mbsym_cli.console import (
     tell,
     watching,
 )
-from mbsym_cli.files import deliver, folder_for, prevented, room_beside, write_whole
+from mbsym_cli.console import show as show_lines
+from mbsym_cli.files import deliver, folder_for, folders_for, prevented, room_beside, unchanged, write_whole
 from mbsym_cli.letters import letters_option, read_letters
 from mbsym_cli.options import Options
 from mbsym_cli.requests import option_of, read_fields
@@ -72,12 +78,19 @@ def command_of(study: Study[Any, Any]) -> StudyCommand:
     def called(file: Path | tuple[Path, ...], **texts: Any) -> None:
         context = click.get_current_context()
         typed = {name for name in texts if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-        files = file if isinstance(file, tuple) else (file,)
-        runs = [_Run(study, path, texts, typed, len(files) > 1) for path in files]
-        command = runs[0].code if len(runs) == 1 else lambda: _together(study, runs)
-        leave(files[0], command, lambda: any(run.delivered for run in runs))
+        if not isinstance(file, tuple):
+            run = _Run(study, file, texts, typed)
+            leave(file, run.code, lambda: run.delivered)
+        options = Options()
+        files = options.descriptions(file)
+        if options.refused():
+            sys.exit(Exit.BAD_INPUT)
+        among = [printable(path.name) for path in files] if len(files) > 1 else []
+        folders = folders_for(files, texts.get("out"))
+        runs = [_Run(study, path, texts, typed, among, at) for path, at in zip(files, folders, strict=True)]
+        leave(file[0], lambda: _several(study, runs), lambda: any(run.delivered for run in runs))
 
-    count = 1 if study.together is None else -1
+    count = -1 if study.several else 1
     command = StudyCommand(
         study.name,
         params=[
@@ -108,17 +121,20 @@ def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
             yield click.Option(["--quiet", "-q"], is_flag=True, help="Print nothing but complaints.")
 
 
-def _together(study: Study[Any, Any], runs: Sequence[_Run]) -> int:
-    """Several descriptions: each with its own files and complaints, and one table of all; the worst exit code."""
-    assert study.together is not None
-    if len({run.folder for run in runs}) < len(runs):
-        text = "error[conflicting-files]: two of the files have one name, and their results would have one folder"
-        complain(runs[0].file, Message(text))
+def _several(study: Study[Any, Any], runs: Sequence[_Run]) -> int:
+    """Several descriptions: each with its own files and complaints, and one table of all; the worst exit code.
+
+    What is wrong with the options of any description is told once.
+    """
+    if len(runs) > 1 and not runs[0].reads_options():
+        for run in runs:
+            run.described()
+        runs[0].options.refused()
         return Exit.BAD_INPUT
-    codes = [run.code() for run in runs]
+    codes = [run.contained() for run in runs]
     known = [run.told for run in runs if run.told is not None]
-    if known:
-        show(study.together(known), known[0][0].system.language)
+    if known and study.together is not None:
+        show(study.together(known), known[0][0].language)
     worst_last: list[int] = [Exit.OK, Exit.FAILED, Exit.BROKEN_DOWN, Exit.BAD_INPUT, Exit.INTERRUPTED]
     return max(codes, key=worst_last.index)
 
@@ -127,16 +143,23 @@ class _Run:
     """One command at work: everything is read and complained about, then derived, written and told."""
 
     def __init__(
-        self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any], typed: Collection[str], among: bool
+        self,
+        study: Study[Any, Any],
+        file: Path,
+        texts: Mapping[str, Any],
+        typed: Collection[str],
+        among: Sequence[str] = (),
+        folder: Path | None = None,
     ) -> None:
-        """``among``: it is one of several, and has a folder of its own in that of all."""
+        """``among``: the names of several, of which it is one, and has a ``folder`` of its own in that of all."""
         self.study, self.file, self.texts, self.among = study, file, texts, among
         self.typed = {name: text for name, text in texts.items() if name in typed}
         self.delivered = False
         self.out: Path | None = texts.get("out")
+        self.inside = self.out if among else None
+        self.folder = folder or folder_for(file, self.out)
         if among and self.out is not None:
-            self.out = self.out / folder_for(file, None).name
-        self.folder = folder_for(file, self.out)
+            self.out = self.folder
         self.told: tuple[Asked, Any, Any] | None = None
         self.quiet = bool(texts.get("quiet"))
         self.as_json = bool(texts.get("as_json"))
@@ -147,10 +170,26 @@ class _Run:
         self.started = time.perf_counter()
         self.say = Language().say
 
+    def reads_options(self) -> bool:
+        """Whether nothing is wrong with them whatever the description is."""
+        values, _, _ = read_fields(self.file, None, self.study.request, self.texts, self.options)
+        self._complain(self.study.request(**values), None)
+        return not self.options.complaints
+
+    def contained(self) -> int:
+        """The exit code; a mistake of ours does not cost what comes after this description."""
+        try:
+            return self.code()
+        except Exception as error:
+            defect(error, self.file)
+            return Exit.FAILED
+
     def code(self) -> int:
-        study, file = self.study, self.file
-        system = self._described()
-        self.say = self.options.say = Language("" if system is None else system.language).say
+        study, file, self.started = self.study, self.file, time.perf_counter()
+        said = (self.texts[x.name] or "" for x in fields_of(study.request) if isinstance(x.kind, Tongue))
+        spoken = next((text.lower() for text in said if text.lower() in LANGUAGES), "")
+        system = self.described()
+        self.say = self.options.say = Language(spoken or ("" if system is None else system.language)).say
         values, scenario, system = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
@@ -160,11 +199,13 @@ class _Run:
             context = None
             if system is not None:
                 store = partial(stack.enter_context, room_beside(folder))
-                known = (self.typed, store, _memory(), self.letters)
+                screen = Screen(asked_width(), self.quiet or self.as_json, self.among, self._seconds)
+                known = (self.typed, store, _memory(), self.letters, spoken, beside, partial(unchanged, folder), screen)
                 context = Asked(system, scenario, printable(file), folder, write_whole, *known)
             self._complain(request, context)
             has_folder = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
-            code = prevented(file, folder if has_folder else None, system is not None, self.options)
+            place = folder if has_folder else None
+            code = prevented(file, place, system is not None, self.options, self.inside)
             if code or context is None:
                 return code or Exit.BAD_INPUT
             return self._answered(context, request)
@@ -176,7 +217,10 @@ class _Run:
             yield used
         self.used |= used
 
-    def _described(self) -> System | None:
+    def _seconds(self) -> float:
+        return time.perf_counter() - self.started
+
+    def described(self) -> System | None:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
         study, bodies = self.study, self.study.bodies(self.texts)
         matrices = study.matrices and not bodies
@@ -226,9 +270,9 @@ class _Run:
                     answer = study.answer(context, request, derived)
                     answer = replace(answer, lines=list(answer.lines))
                 if answer.files:
-                    deliver(context.folder, answer.files, answer.owner or study.name)
+                    self.delivered = True  # Ctrl-C may come when it is complete, and has not returned
+                    deliver(context.folder, answer.files, answer.owner or study.name, answer.gone)
                 if answer.stopped is not None:
-                    self.delivered = bool(answer.files)
                     raise answer.stopped
         except OSError as error:
             complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
@@ -248,12 +292,14 @@ class _Run:
             click.echo(
                 _json(context, answer) if study.json is None else study.json(context, request, derived), nl=False
             )
-        elif self.among:
+        elif self.among and study.together is not None:
             self.told = context, request, derived
         else:
             with self._in_letters(context.system) as used:
                 self._tell(context, answer, used)
         self._complaints(answer.complaints)
+        for defective in {described(x): x for x in answer.defects}.values():
+            defect(defective, file)
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
@@ -269,19 +315,21 @@ class _Run:
                 click.echo(answer.text, nl=False)
             return
         loud = not self.quiet
-        if loud:
-            seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
+        if loud and not answer.bare:
+            seconds = f",{UNBROKEN}{self._seconds():.2f}{UNBROKEN}s" if self.study.timed else ""
             tell((context.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
         for block in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(block, Line) and (loud or block.always):
                 parts = (self.say(x) if isinstance(x, str) else (self.say(x[0]), x[1]) for x in block.parts)
                 tell(*parts, whole=block.whole)
+            elif isinstance(block, Written):
+                show_lines([block])
             elif not isinstance(block, Line) and (loud or answer.brief):
-                show([block], context.system.language)
-        if loud:
-            show(with_meanings((), context.system, self.used | used), context.system.language)
-        if answer.files and loud:
-            show_files(context.folder, answer.files, context.system.language, answer.more)
+                show([block], context.language)
+        if loud and not answer.bare:
+            show(with_meanings((), context.system, self.used | used), context.language)
+        if answer.files and answer.listed and loud and not answer.bare:
+            show_files(context.folder, answer.files, context.language, answer.more)
         for closing in answer.last if loud else ():
             tell(*closing.parts, whole=closing.whole)
 
@@ -315,9 +363,15 @@ def _memory() -> Remember:
     """What was measured before counts for a command in a process of its own."""
     if not Beside.allowed:
         return unremembered
-    from mbsym_cli.remembered import remembered
 
-    return remembered
+    def recalled(
+        question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+    ) -> tuple[Any, bool]:
+        from mbsym_cli.remembered import remembered  # few studies have anything to remember
+
+        return remembered(question, measure, sound, anew)
+
+    return recalled
 
 
 def _json(context: Asked, answer: Answer) -> str:
@@ -346,8 +400,7 @@ WIDTH = 120
 def show(blocks: Iterable[Block], language: str) -> None:
     """Prints them beneath the name of a system."""
     writer = Writer(Language(language), width=(asked_width() or WIDTH) - 2)
-    for parts, whole, margin in writer.document(blocks):
-        tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
+    show_lines(writer.document(blocks))
 
 
 def show_files(folder: Path, names: Iterable[str], language: str, more: str = "") -> None:

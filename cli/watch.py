@@ -9,11 +9,16 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import click
+from click.core import ParameterSource
 
+from mbsym.studies import run
+from mbsym.studies.request import fields_of, words_typed
 from mbsym.studies.study import Exit
 from mbsym_cli.console import OutPath, complain
+from mbsym_cli.requests import option_of
 
 #: Seconds between two looks at the file, and after which a file that is being saved has settled.
 PERIOD = 0.2
@@ -23,15 +28,11 @@ Stamp = tuple[int, int]
 
 @click.command("watch")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("-p", "--problems", help="As for run.")
-@click.option("-f", "--format", "formats", help="As for run.")
 @click.option("-o", "--out", type=OutPath(path_type=Path), help="As for run.")
-@click.option("-b", "--brief", is_flag=True, help="Print one line a time.")
 @click.option("--simulate", "seconds", metavar="T", help="Simulate from 0 to T as well.")
-def command(
-    file: Path, problems: str | None, formats: str | None, out: Path | None, brief: bool, seconds: str | None
-) -> None:
-    """Derive FILE as run does, now and whenever it is saved; Ctrl-C ends it.
+@click.pass_context
+def command(context: click.Context, file: Path, out: Path | None, seconds: str | None, **texts: Any) -> None:
+    """Derive FILE as run does, with its options, now and whenever it is saved; Ctrl-C ends it.
 
     A derivation that is under way when the file changes is given up and begun again.
 
@@ -43,16 +44,18 @@ def command(
     if not file.is_file():
         complain(file, "there is no such file")
         sys.exit(Exit.BAD_INPUT)
-    arguments = [str(file)]
-    for option, value in (("--problems", problems), ("--format", formats), ("--out", out)):
-        arguments += [] if value is None else [option, str(value)]
-    commands = [["run", *arguments, *(["--brief"] if brief else [])]]
+    typed = {x: y for x, y in texts.items() if context.get_parameter_source(x) is ParameterSource.COMMANDLINE}
+    typed |= {} if out is None else {"out": out}
+    commands = [["run", str(file), *words_typed(run.Command, typed)]]
     if seconds is not None:
         commands.append(["simulate", str(file), "--time", seconds])
     try:
         _watch(file, commands)
     except KeyboardInterrupt:
         sys.exit(Exit.INTERRUPTED)
+
+
+command.params[1:1] = [option_of(field) for field in fields_of(run.Command)]
 
 
 def _watch(file: Path, commands: list[list[str]]) -> None:

@@ -9,6 +9,8 @@
 ``energy``, ``equations``, ``equilibrium``, ``linearisation``, ``stability``, ``integrals``, ``claims`` and ``checks``
 are derived when they are first asked for.  Matrices print as LaTeX in a notebook and convert with ``.to_sympy()``.
 
+``run`` derives all of it, as the command does, and returns the reports and programs as texts.
+
 ``simulate`` integrates the equations of motion and returns times, coordinates, velocities and energy as arrays, with
 how far the energy is known to be conserved and an estimate of the error.  ``tradeoff``, ``extremes`` and
 ``equilibria`` return what the commands of these names measure and find, as tables of arrays.
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from mbsym.studies.lyapunov import lyapunov as lyapunov
     from mbsym.studies.orbit import orbit as orbit
     from mbsym.studies.regressor import regressor as regressor
+    from mbsym.studies.run import run as run
     from mbsym.studies.simulate import simulate as simulate
     from mbsym.studies.simulate.functions import ensemble as ensemble
     from mbsym.studies.simulate.functions import gradient as gradient
@@ -47,6 +50,7 @@ _PLACES = {
     "lyapunov": ("lyapunov",),
     "orbit": ("orbit",),
     "regressor": ("regressor",),
+    "run": ("run",),
     "simulate": ("simulate",),
     "simulate.functions": ("ensemble", "gradient", "plan", "sensitivities"),
     "tables": ("equilibria", "extremes", "tradeoff"),
@@ -66,6 +70,7 @@ __all__ = [
     "orbit",
     "plan",
     "regressor",
+    "run",
     "sensitivities",
     "simulate",
     "tradeoff",

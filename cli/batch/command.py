@@ -7,15 +7,18 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.safe import quoted as ascii_safe
+from mbsym.studies import run
+from mbsym.studies.request import fields_of
 from mbsym.studies.study import Exit
 from mbsym_cli.console import OutPath, speaking
 from mbsym_cli.options import Options
+from mbsym_cli.requests import option_of, read_fields
 
 if TYPE_CHECKING:
     from mbsym_cli.batch.run import Request
@@ -36,11 +39,6 @@ _MEGABYTE = 2**20
 @click.option("--cluster", metavar="ADDRESS", help="Of a Dask scheduler, tcp://host:8786; local: starts one here.")
 @click.option("--fail-fast", is_flag=True, help="Begin nothing new after a failure.")
 @click.option("--changed", is_flag=True, help="Print only what was not up to date.")
-@click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show]")
-@click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
-@click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
-@click.option("--angles", metavar="FORM", help="Of formulas, as in run: products, sums or shorter.")
-@click.option("--detail", default="compact", show_default=True, metavar="WORD", help="As in run: compact, or full.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option(
     "--output-format",
@@ -62,15 +60,11 @@ def command(
     cluster: str | None,
     fail_fast: bool,
     changed: bool,
-    problems: str | None,
-    formats: str,
-    terms: str,
-    angles: str | None,
-    detail: str,
     strict_claims: bool,
     output_format: str,
     appendix: bool,
     quiet: bool,
+    **texts: Any,
 ) -> None:
     """Derive every description in each FOLDER, and in the folders in it, and write a summary.
 
@@ -101,34 +95,30 @@ def command(
       mbsym batch systems/ --cluster tcp://10.0.0.1:8786
     """
     from mbsym.batch.transport import BatchOptions, Budget
-    from mbsym.report.targets import ANGLES, DETAILS
 
     options = Options()
     for path in folders:
         if not path.exists():
             options.complain(str(path), "missing", "there is no such file or folder")
-    kinds = _formats(options, formats)
-    numbers = None if problems is None else options.problems(problems)
-    bound = options.whole("--terms", terms, 1, 10**12)
-    form = None if angles is None else options.word("--angles", angles, ANGLES, "form")
-    detail_word = options.word("--detail", detail, DETAILS, "detail") or detail
+    values, _, _ = read_fields(out, None, run.Request, texts, options)
     width = options.whole("--jobs", jobs, 1, 1024)
     seconds = _seconds(options, timeout)
     megabytes = options.whole("--memory", memory, 0, 10**9)
     part = _part(options, shard)
-    if appendix and "latex" not in kinds:
+    if appendix and "latex" not in values["formats"]:
         options.complain("--appendix", "conflicting-options", "it joins LaTeX files", "add latex to --format")
-    if options.refused() or bound is None:
+    if options.refused():
         sys.exit(Exit.BAD_INPUT)
     from mbsym_cli.batch.machine import processors, shared_memory
-    from mbsym_cli.batch.run import Request, run
+    from mbsym_cli.batch.run import Request
+    from mbsym_cli.batch.run import run as whole
 
     width = width or processors()
     limit = shared_memory(width) if megabytes is None else megabytes * _MEGABYTE or None
     request = Request(
         folders=folders,
         out=out,
-        options=BatchOptions(kinds, numbers, bound, form, detail_word),
+        options=BatchOptions(**values),
         budget=Budget(seconds, limit),
         jobs=width,
         patterns=patterns,
@@ -141,26 +131,25 @@ def command(
         cluster=cluster,
         appendix=appendix,
     )
-    sys.exit(run(request) if cluster is None else _on_cluster(request))
+    sys.exit(whole(request) if cluster is None else _on_cluster(request))
+
+
+#: What is derived of each description, and written, as ``mbsym run`` has it.
+AS_IN_RUN = ("problems", "formats", "terms", "angles", "detail")
+command.params[-5:-5] = [option_of(field) for field in fields_of(run.Request) if field.name in AS_IN_RUN]
 
 
 def _on_cluster(request: Request) -> int:
     from mbsym.batch.cluster import NoCluster
     from mbsym_cli.batch.folders import found_in
-    from mbsym_cli.batch.run import run
+    from mbsym_cli.batch.run import run as whole
 
     try:
-        return run(request)
+        return whole(request)
     except NoCluster as error:
         files = [place.file for place in found_in(request.folders, request.out).places]
         print(f"--cluster: {speaking(*files)(error.reason)}", file=sys.stderr)
         return Exit.BAD_INPUT
-
-
-def _formats(options: Options, text: str) -> tuple[str, ...]:
-    from mbsym.report.targets import FORMATS, TARGETS
-
-    return options.words("--format", text, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
 
 
 def _seconds(options: Options, text: str) -> float | None:

@@ -1,8 +1,8 @@
 """The pipeline on one page: numbers, titles, who needs whom.
 
 ``Analysis`` computes every result when it is first asked for and remembers it, or why there is none, and the seconds
-it took.  The dependency graph is plain attribute access.  A problem is one line here: its number, its title, the module
-that explains it, and how it follows from other results.
+it took.  The dependency graph is plain attribute access.  A problem is one line here: how it follows from other
+results; its number and title stand in ``mbsym.problems``.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.substitution import held
 from mbsym.model.system import System
-from mbsym.problems import kinematics, knowledge
+from mbsym.problems import TITLES, kinematics, knowledge
 from mbsym.problems.checks import Check, oracles
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
@@ -87,16 +87,19 @@ class Problem(Derived["Analysis", T]):
 
     def __init__(
         self,
-        number: int,
-        title: str,
-        module: str,
         derive: Callable[[Analysis], T],
         stands_on: Sequence[str],
         says: bool = False,
         knows: Knows = Knows.NO_OTHERS,
+        module: str = "",
     ) -> None:
         super().__init__(derive, stands_on, says, knows)
-        self.number, self.title, self.module = number, title, module
+        self.module = module
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        super().__set_name__(owner, name)
+        self.module = self.module or name
+        self.number, self.title = [*TITLES].index(name) + 1, TITLES[name]
 
     @property
     def attribute(self) -> str:
@@ -246,16 +249,9 @@ class Analysis(Stages):
 
     # --- the numbered problems ---
 
-    kinematics = Problem[Kinematics](
-        1, "kinematics", "kinematics", lambda a: kinematics.kinematics(a.scene), ("kinematics",), knows=OF_EQUATIONS
-    )
-    energy = Problem[Energy](
-        2, "energy and force function", "energy", deriving.energy_of, ("energy",), knows=OF_EQUATIONS
-    )
+    kinematics = Problem[Kinematics](lambda a: kinematics.kinematics(a.scene), ("kinematics",), knows=OF_EQUATIONS)
+    energy = Problem[Energy](deriving.energy_of, ("energy",), knows=OF_EQUATIONS)
     equations = Problem[Equations](
-        3,
-        "nonlinear Lagrange equations",
-        "equations",
         deriving.equations_of,
         ("equations of motion", "constraints", "constrained motion"),
         knows=OF_EQUATIONS,
@@ -273,9 +269,6 @@ class Analysis(Stages):
     reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced, knows=Knows.CONSTRAINTS)
     residuals = Derived["Analysis", Column](approximation.residuals, knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES)
     equilibrium = Problem[Equilibrium](
-        4,
-        "equilibrium conditions",
-        "equilibrium",
         deriving.equilibrium_of,
         ("equilibrium",),
         says=True,
@@ -283,9 +276,6 @@ class Analysis(Stages):
     )
     first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation, knows=OF_MOTIONS)
     linearisation = Problem[Linearisation](
-        5,
-        "linearisation",
-        "linearisation",
         approximation.autonomous,
         ("linearisation", "perturbed motion"),
         knows=OF_MOTIONS,
@@ -295,13 +285,8 @@ class Analysis(Stages):
     )
     judgeable = Derived["Analysis", Linearisation](approximation.judgeable, knows=OF_MOTIONS)
     balance = Derived["Analysis", Balance](deriving.balance_of, knows=OF_MOTIONS)
-    stability = Problem[Stability](
-        6, "stability", "stability", deriving.stability_of, JUDGED, says=True, knows=OF_MOTIONS
-    )
+    stability = Problem[Stability](deriving.stability_of, JUDGED, says=True, knows=OF_MOTIONS)
     integrals = Problem[tuple[Integral, ...]](
-        7,
-        "first integrals",
-        "integrals",
         deriving.first_integrals,
         ("equations of motion", *constrained.CHECKS, "first integrals"),
         says=True,
@@ -309,9 +294,6 @@ class Analysis(Stages):
     )
 
     stabilisation: Problem[Stabilisation] = Problem(
-        8,
-        "stabilisation",
-        "stabilisation",
         deriving.stabilisation_of,
         (*JUDGED, "stabilisation"),
         says=True,
@@ -319,9 +301,6 @@ class Analysis(Stages):
     )
 
     polynomial_integrals: Problem[Polynomials] = Problem(
-        9,
-        "polynomial integrals",
-        "polynomial_integrals",
         later("mbsym.analysis.polynomial", "polynomials_of"),
         ("equations of motion", "polynomial integrals"),
         says=True,
@@ -336,9 +315,6 @@ class Analysis(Stages):
     )
 
     invariant_sets: Problem[InvariantSets] = Problem(
-        10,
-        "steady motions and invariant manifolds",
-        "invariant_sets",
         later("mbsym.analysis.invariant", "invariant_sets_of"),
         ("equations of motion", "first integrals"),
         says=True,
@@ -346,9 +322,6 @@ class Analysis(Stages):
     )
 
     normal_forms: Problem[NormalForms] = Problem(
-        11,
-        "terms of higher order",
-        "normal_forms",
         later("mbsym.analysis.higher", "normal_forms_of"),
         (*JUDGED, "normal forms"),
         says=True,
@@ -356,13 +329,11 @@ class Analysis(Stages):
     )
 
     small_parameters: Problem[SmallParameters] = Problem(
-        12,
-        "small parameters",
-        "small_parameter",
         later("mbsym.analysis.small", "small_parameters_of"),
         ("equations of motion", "energy"),
         says=True,
         knows=OF_ALL,
+        module="small_parameter",
     )
 
     # --- problem 5 in speeds, of a system that has some ---
@@ -448,10 +419,7 @@ def _without_speeds() -> None:
 
 
 #: Every numbered problem, by its number.
-PROBLEMS: dict[int, Problem[Any]] = {
-    item.number: item
-    for item in sorted((x for x in vars(Analysis).values() if isinstance(x, Problem)), key=lambda item: item.number)
-}
+PROBLEMS: dict[int, Problem[Any]] = {number: vars(Analysis)[name] for number, name in enumerate(TITLES, start=1)}
 ALL_PROBLEMS = tuple(PROBLEMS)
 #: Those of every run; later ones are derived where they are named (8 of systems that are given by their matrices, too).
 USUAL_PROBLEMS = tuple(number for number in PROBLEMS if number < 8)

@@ -17,7 +17,7 @@ from mbsym.batch.transport import Finished, Task
 from mbsym.expressions.message import Message, joined
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Iterable
 
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
@@ -57,19 +57,12 @@ def complaint_row(complaint: Complaint) -> ComplaintRow:
 
 
 def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
-    from mbsym.analysis import Analysis
-    from mbsym.analysis.given import chosen as own_problems
-    from mbsym.formulas.tree import angles_as
-    from mbsym.report.targets import shown_by
-    from mbsym.report.whole_run import derive_all, lost, rendered_all
+    from mbsym.report.whole_run import analysis_of, lost, remarks, silent, whole_run
 
     options = task.options
-    problems = own_problems(system, shown_by(options.formats)) if options.problems is None else options.problems
-    analysis = Analysis(system, problems, options.terms)
+    analysis = analysis_of(system, options.problems, options.formats, options.terms)
     analysis.detail = options.detail
-    derive_all(analysis, options.formats, _silent)
-    with angles_as(cast("Angles | None", options.angles)):
-        rendered = rendered_all(analysis, options.formats, _silent)
+    rendered = whole_run(analysis, options.formats, silent, angles=cast("Angles | None", options.angles))
     files = {file.filename: file.text for file in rendered if file.text is not None}
     defects = lost(analysis, rendered)
     outcome = _outcome(analysis, defects)
@@ -85,17 +78,13 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
         ),
         files=tuple(FileRow(name, _digest(content)) for name, content in sorted(files.items())),
         message=Message("there was not enough memory for a part of it") if outcome is Outcome.MEMORY else "",
-        notes=tuple(_notes(analysis, defects, options.formats, files)),
+        notes=tuple(dict.fromkeys((*_losses(analysis, defects), *remarks(options.formats, files)))),
     )
     return row, files
 
 
 def _digest(content: str | bytes) -> str:
     return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
-
-
-def _silent(_: str) -> None:
-    """Nobody is watching."""
 
 
 def _outcome(analysis: Analysis, defects: Iterable[tuple[str, NoResult]]) -> Outcome:
@@ -147,16 +136,8 @@ def _claim_rows(analysis: Analysis) -> Iterable[ClaimRow]:
         yield ClaimRow(line.place, line.title, line.word, line.outcome, line.lines)
 
 
-def _notes(
-    analysis: Analysis, defects: Iterable[tuple[str, NoResult]], formats: Iterable[str], files: Collection[str]
-) -> Iterable[str]:
-    """What the program is at fault for, and what is to be told of files that were made, each once."""
-    from mbsym.report.targets import FORMATS
-
-    notes: list[str] = [joined((where, why.reason), ": ") for where, why in defects]
+def _losses(analysis: Analysis, defects: Iterable[tuple[str, NoResult]]) -> Iterable[str]:
+    """What the program is at fault for."""
+    yield from (joined((where, why.reason), ": ") for where, why in defects)
     for error in analysis.defects:
-        notes.append(Message("internal error: [[error]]", error=f"{type(error).__name__}: {error}".removesuffix(": ")))
-    for target in (FORMATS[name] for name in formats):
-        words = target.remark() if target.remark is not None and target.filename in files else ""
-        notes += [joined((target.filename, words), ": ")] if words else []
-    return dict.fromkeys(notes)
+        yield Message("internal error: [[error]]", error=f"{type(error).__name__}: {error}".removesuffix(": "))

@@ -47,8 +47,10 @@ if TYPE_CHECKING:
 
 Tensor = tuple[Vector, Vector, Vector]
 
-#: The languages of reports, and what they are called.
-LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
+#: The languages of reports, with what LaTeX's babel calls them; each but the first has its messages in a file.
+LANGUAGES = {"en": "", "ru": "russian", "es": "spanish,es-noquoting,es-noshorthands,es-nodecimaldot"}
+#: ``en, ru or es``.
+ONE_OF_LANGUAGES = " or ".join(", ".join(LANGUAGES).rsplit(", ", 1))
 
 
 @dataclass(frozen=True, slots=True)

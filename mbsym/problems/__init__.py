@@ -2,8 +2,22 @@
 
 from collections.abc import Iterable
 
-#: The numbers under which ``mbsym.analysis`` lists them; here for those who only have to know what may be asked for.
-NUMBERS = tuple(range(1, 13))
+#: The numbered problems in their order: the attribute of an analysis that holds the result, and what it is about.
+TITLES = {
+    "kinematics": "kinematics",
+    "energy": "energy and force function",
+    "equations": "nonlinear Lagrange equations",
+    "equilibrium": "equilibrium conditions",
+    "linearisation": "linearisation",
+    "stability": "stability",
+    "integrals": "first integrals",
+    "stabilisation": "stabilisation",
+    "polynomial_integrals": "polynomial integrals",
+    "invariant_sets": "steady motions and invariant manifolds",
+    "normal_forms": "terms of higher order",
+    "small_parameters": "small parameters",
+}
+NUMBERS = tuple(range(1, len(TITLES) + 1))
 
 
 def ranges(numbers: Iterable[int] = NUMBERS) -> str:

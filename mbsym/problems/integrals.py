@@ -411,9 +411,9 @@ def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bo
 
 
 def is_independent(ring: Ring, x: Polynomial, others: Sequence[Polynomial]) -> bool:
-    """Whether x is no combination of the others with constant coefficients (a, cos(a), pi), or none that is found."""
+    """Whether x is no combination of 1 and the others with coefficients like a, cos(a), pi, or none that is found."""
     try:
-        return not others or not any(len(others) in c for c in kernel(ring, [*others, x]))
+        return not others or not any(len(others) + 1 in c for c in kernel(ring, [ring.one, *others, x]))
     except Failure:
         return True
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from enum import StrEnum
 
 from mbsym.expressions.message import Counted, Message, Said, filled
+from mbsym.model.system import LANGUAGES
 from mbsym.report.messages import messages, plurals
-
-_BABEL = {"en": "", "ru": "russian", "es": "spanish,es-noquoting,es-noshorthands,es-nodecimaldot"}
 
 
 class Language:
@@ -15,7 +14,7 @@ class Language:
 
     def __init__(self, name: str = "") -> None:
         self.name = name or "en"
-        self.babel = _BABEL[self.name]
+        self.babel = LANGUAGES[self.name]
         self._messages = {} if self.name == "en" else messages(self.name)
         self._forms, self._form = ({}, int) if self.name == "en" else plurals(self.name)
 

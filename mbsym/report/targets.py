@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from mbsym.problems import TITLES
+
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
@@ -93,27 +95,6 @@ def _fragment(name: str, number: int | None, title: str) -> Target:
     return Target(name, f"fragments/{name}.tex", None, f"a part of the appendix: {title}", text, applies=wanted)
 
 
-_FRAGMENTS = (
-    ("system", None, "the system"),
-    ("diagram", None, "interconnection of the bodies"),
-    ("conventions", None, "conventions"),
-    ("kinematics", 1, "kinematics"),
-    ("energy", 2, "energy"),
-    ("equations", 3, "equations of motion"),
-    ("equilibrium", 4, "the unperturbed motion"),
-    ("linearisation", 5, "linearisation"),
-    ("stability", 6, "stability"),
-    ("integrals", 7, "first integrals"),
-    ("stabilisation", 8, "stabilisation"),
-    ("polynomial_integrals", 9, "polynomial integrals"),
-    ("invariant_sets", 10, "steady motions and invariant manifolds"),
-    ("normal_forms", 11, "terms of higher order"),
-    ("small_parameters", 12, "small parameters"),
-    ("claims", None, "claims"),
-    ("checks", None, "self-check"),
-)
-
-
 def _wolfram(analysis: Analysis, problems: Sequence[int]) -> str:
     from mbsym.report.wolfram_report import render
 
@@ -152,7 +133,12 @@ def _json(analysis: Analysis, problems: Sequence[int]) -> str:
 
 _IN_DOCUMENTS = (
     Target("appendix", "appendix.tex", None, "an appendix for anyone's document", _appendix),
-    *(_fragment(*one) for one in _FRAGMENTS),
+    _fragment("system", None, "the system"),
+    _fragment("diagram", None, "interconnection of the bodies"),
+    _fragment("conventions", None, "conventions"),
+    *(_fragment(name, number, title) for number, (name, title) in enumerate(TITLES.items(), start=1)),
+    _fragment("claims", None, "claims"),
+    _fragment("checks", None, "self-check"),
 )
 _HEADER = Target("header", "model.h", (), "declarations of the C source", _c_header)
 

@@ -5,19 +5,22 @@ Whatever fails stays where it happened: a formula in its problem, a problem in i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
 
 from mbsym.algebra.failures import Defect, Failure, Severity
+from mbsym.algebra.ring import TERM_BUDGET
 from mbsym.analysis.stages import NoResult
-from mbsym.expressions.message import Message
-from mbsym.report.targets import Target
+from mbsym.expressions.message import Message, joined, worded
+from mbsym.report.targets import FORMATS, Target, shown_by
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.tree import Angles
+    from mbsym.model.system import System
     from mbsym.problems.checks import Check
 
 
@@ -117,7 +120,37 @@ def unhelped(work: Callable[[], Any], sound: Callable[[Any], bool]) -> Iterator[
     yield work
 
 
-def _silent(_: str) -> None: ...
+def silent(_: str) -> None:
+    """Nobody is watching."""
+
+
+def analysis_of(
+    system: System, problems: Iterable[int] | None, formats: Iterable[str], terms: int = TERM_BUDGET
+) -> Analysis:
+    """What is to be derived: the problems that were named, else those of the system that the formats show."""
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.given import chosen
+
+    return Analysis(system, chosen(system, shown_by(formats)) if problems is None else problems, terms)
+
+
+def whole_run(
+    analysis: Analysis, formats: Sequence[str], say: Say, beside: Beside = unhelped, angles: Angles | None = None
+) -> list[Rendered]:
+    """Everything derived, and the files of these formats; ``angles``: the form of those in every file."""
+    from mbsym.formulas.tree import angles_as
+
+    early = derive_all(analysis, formats, say, beside, lambda: angles_as(angles))
+    with angles_as(angles):
+        return rendered_all(analysis, formats, say, beside, early)
+
+
+def remarks(formats: Iterable[str], files: Collection[str]) -> Iterator[str]:
+    """What is to be told of files that were made here."""
+    for target in (FORMATS[name] for name in formats):
+        words = target.remark() if target.remark is not None and target.filename in files else ""
+        if words:
+            yield joined((target.filename, worded(words)), ": ")
 
 
 def derive_all(
@@ -141,7 +174,6 @@ def derive_all(
     from mbsym.report.language import Language
     from mbsym.report.plain_writer import Writer
     from mbsym.report.results import contents, results
-    from mbsym.report.targets import FORMATS
 
     write = Writer(Language(analysis.language or analysis.system.language))
     known = contents(results(analysis, analysis.problems), write.document)
@@ -168,7 +200,7 @@ def derive_all(
     def work() -> tuple[list[Check], Files]:
         checks = carried_out(analysis)
         with writing():
-            return checks, _made(early, analysis, _silent)
+            return checks, _made(early, analysis, silent)
 
     with beside(work, lambda outcome: len(analysis.defects) == defects and _whole(outcome[1])) as outcome:
         with analysis.unvouched():
@@ -212,8 +244,6 @@ def _prepare(formats: Iterable[str], analysis: Analysis, writing: Callable[[], A
 
 
 def _made(formats: Iterable[str], analysis: Analysis, say: Say) -> Files:
-    from mbsym.report.targets import FORMATS
-
     made = {}
     for name in formats:
         say(f"writing {FORMATS[name].filename}")

@@ -39,7 +39,7 @@ DIALECT = Dialect(call=wolfram_call, number=wolfram_number, tables=True)
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
-    from mbsym.analysis import PROBLEMS
+    from mbsym.analysis import PROBLEMS, USUAL_PROBLEMS
 
     sections = contents(
         results(analysis, problems), Writer(readable=True, longest=LONGEST, file="results.json").document
@@ -77,13 +77,13 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         system=analysis.system,
         names=names,
         found=solved,
-        lines={n: [x.text for x in sections[n]()][1:] for n in (8, 9, 10, 11, 12) if n in solved},
+        lines={n: [x.text for x in sections[n]()][1:] for n in solved if n not in USUAL_PROBLEMS},
         polynomial_formulas=[x.wolfram() for x in solved[9].formulas] if 9 in solved else [],
         small_parameter_formulas=list(_of_small_parameters(solved[12], analysis.system, names)) if 12 in solved else [],
         forms=forms,
         undetermined=_undetermined(analysis) if 3 in problems else "",
         reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),
-        parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
+        parts=[PROBLEMS[number] for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
         code=_code(analysis) if 3 in stages and 3 not in solved else None,
         tables=[wolfram_definition(table) for table in analysis.system.tables],

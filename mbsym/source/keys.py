@@ -27,7 +27,7 @@ from mbsym.model.loads import (
     UniformGravity,
 )
 from mbsym.model.speeds import QUATERNION
-from mbsym.model.system import LANGUAGES, SHAPES
+from mbsym.model.system import LANGUAGES, ONE_OF_LANGUAGES, SHAPES
 from mbsym.source.grammar import (
     About,
     BodyName,
@@ -666,7 +666,7 @@ SYSTEM = {
         label="latex symbols",
     ),
     "order": Key("in which order subsystems and their coordinates are told, in problems 5 and 6: [theta, psi]", _NAMES),
-    "language": Key("of the reports: en, ru or es", Word(tuple(LANGUAGES))),
+    "language": Key(f"of the reports: {ONE_OF_LANGUAGES}", Word(tuple(LANGUAGES))),
     "units": Key(
         "units of coordinates, parameters, prescribed motions: {x: m, theta: rad}; every formula is then checked",
         Named(_UNIT, "coordinate"),

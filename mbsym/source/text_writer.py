@@ -17,7 +17,7 @@ from mbsym.source.keys import ALIASES, LOADS
 from mbsym.source.labels import ASSUMPTIONS, BODY, FREE, FREE_KEYS, HEADER, NUMBERED, SECTIONS
 from mbsym.source.placed import Scalar
 from mbsym.source.text_kinds import split
-from mbsym.source.text_lines import GREEK
+from mbsym.source.text_lines import PRINTED
 from mbsym.source.yaml_writer import Shape as Data
 from mbsym.source.yaml_writer import body_shape, system_shape, vector_shape
 
@@ -129,7 +129,7 @@ def _header(key: str, value: Data, numbers: dict[str, str]) -> list[Line]:
         value = [numbers.get(_flat(body), _flat(body)) for body in value]
     if key == "small parameter":
         return [(label, small(value))]
-    return [(label, free(value, greek=True) if label in FREE and isinstance(value, str) else _braces(value))]
+    return [(label, free(value, kept=True) if label in FREE and isinstance(value, str) else _braces(value))]
 
 
 def small(value: Data) -> str:
@@ -173,14 +173,14 @@ def text_of(value: Data) -> str:
     return record(value) if isinstance(value, dict) else _flat(value)
 
 
-def free(value: str, greek: bool = False) -> str:
-    """Text for people: in double quotes where it could be taken for something else, or its Greek letters for names.
+def free(value: str, kept: bool = False) -> str:
+    """Text for people: in double quotes where it could be taken for something else.
 
-    ``greek``: where it stands, these are kept.
+    Greek letters and printed signs could be for names and operators, unless they are ``kept`` where it stands.
     """
     plain = value == value.strip() and "\n" not in value and not any(mark in value for mark in ';"#\\=')
     apart = len(list(split(Scalar(f"{value};", Span(1, 1)), ";"))) == 2  # every bracket is closed
-    if value and plain and apart and (greek or GREEK.search(value) is None):
+    if value and plain and apart and (kept or PRINTED.search(value) is None):
         return value
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'

@@ -15,13 +15,17 @@ from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_hints
 
 from mbsym.expressions.message import Message
-from mbsym.model.system import LANGUAGES
+from mbsym.model.system import LANGUAGES, ONE_OF_LANGUAGES
+from mbsym.problems import NUMBERS, ranges
 
 if TYPE_CHECKING:
     from mbsym.expressions.place import Complaints
     from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
     from mbsym.numerics.ensembles.variation import Variation
+
+#: Errors that can be asked for: nothing here is finer, and nothing coarser says anything about a motion.
+LEAST_ERROR, MOST_ERROR = 1e-17, 0.5
 
 #: What Python takes for a parameter, an initial position or an initial velocity: ``Fraction(1, 3)``, ``0.5``,
 #: ``"pi/6"``.
@@ -104,10 +108,16 @@ class Word(Chosen):
 
 
 @dataclass(frozen=True)
+class Tongue(Word):
+    """The language in which everything is said, where it is not that of the description."""
+
+
+@dataclass(frozen=True)
 class Words(Chosen):
-    """Some of a few words, separated by commas; ``every`` stands for all of them."""
+    """Some of a few words, separated by commas; ``every`` stands for all of them, or for ``all_of``."""
 
     every: str = ""
+    all_of: tuple[str, ...] = ()
 
     def wrong(self, name: str, value: Sequence[str]) -> str:
         return self._unknown([word for word in value if word not in (*self.known, self.every)])
@@ -170,6 +180,20 @@ class Settings(Kind):
 @dataclass(frozen=True)
 class Substitutions(Kind):
     """``NAME=VALUE``, values of parameters that are put into the description before anything else is read."""
+
+
+@dataclass(frozen=True)
+class Scale(Kind):
+    """``NAME=EXPRESSION,...``: dimensionless variables that the description is put in before anything else is read."""
+
+
+@dataclass(frozen=True)
+class Problems(Kind):
+    """Numbered problems, ``1-5`` or ``1,3,6``."""
+
+    def wrong(self, name: str, value: Sequence[int]) -> str:
+        unknown = ", ".join(str(number) for number in value if number not in NUMBERS)
+        return f"there is no problem {unknown}: problems are numbered {ranges()}" if unknown else ""
 
 
 @dataclass(frozen=True)
@@ -283,9 +307,9 @@ def formats(help: str, choices: tuple[str, ...], usual: str = "") -> Words:
     return Words("LIST", help, "-f", usual=usual, choices=choices, what="format")
 
 
-def language(help: str) -> Word:
-    """``--language``, of figures and texts."""
-    return Word("NAME", help, choices=tuple(LANGUAGES), what="language")
+def language(what: str, usual: str = "", kind: type[Word] = Word) -> Word:
+    """``--language`` of ``what``."""
+    return kind("LANGUAGE", f"{what}: {ONE_OF_LANGUAGES}.", usual=usual, choices=tuple(LANGUAGES), what="language")
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
     from mbsym.report.content import Block
+    from mbsym.report.plain_writer import Line as Written
+    from mbsym.report.whole_run import Beside
 
 
 class Exit(IntEnum):
@@ -77,6 +79,19 @@ def unremembered(
 
 
 @dataclass(frozen=True)
+class Screen:
+    """Where a result is told: ``width`` columns, None in a file or pipe, or ``quiet``, nowhere.
+
+    ``names`` of all descriptions, this one's among them; ``seconds()`` since the study of this one began.
+    """
+
+    width: int | None = None
+    quiet: bool = False
+    names: Sequence[str] = ()
+    seconds: Callable[[], float] = lambda: 0.0
+
+
+@dataclass(frozen=True)
 class Asked:
     """What a study is about: the description, with the values of the request where it is of one motion.
 
@@ -84,7 +99,8 @@ class Asked:
     ``typed``: the texts of what was given on the command line, by the names of fields and of ``as_json``, ``out``, ...;
     ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory; ``remember``
     knows what was measured before; ``letters``: the author's, in which formulas are written, None where nothing was
-    said of them.
+    said of them; ``spoken``: the language in which all is said, where it is not that of the description; ``beside``:
+    who helps; ``unchanged`` lists the files that a command wrote into the folder and that are as it wrote them.
     """
 
     system: System
@@ -96,6 +112,14 @@ class Asked:
     store: Callable[[], BinaryIO | None] = lambda: None
     remember: Remember = unremembered
     letters: tuple[str, ...] | None = None
+    spoken: str = ""
+    beside: Beside | None = None
+    unchanged: Callable[[str], Sequence[str]] = lambda command: ()
+    screen: Screen = Screen()
+
+    @property
+    def language(self) -> str:
+        return self.spoken or self.system.language
 
     @property
     def motion(self) -> Scenario:
@@ -112,10 +136,12 @@ class Answer:
     of files.  ``owner``: the command whose set the files are, unless it is that of the study; ``more``: what is said
     behind their names; ``stopped``: what broke off the making of some of them, which is raised when the others have
     been written; ``text``: what is printed as it is, and nothing else, for other programs; ``breaks``: a terminal may
-    break its lines, between the terms of formulas.
+    break its lines, between the terms of formulas.  ``bare``: the lines stand alone; ``listed``: the names of files
+    beneath them.  ``gone``: of files that were written before, those that are to go, None: whatever is not among
+    ``files``.  ``defects``: exceptions that nobody foresaw, and that were contained.
     """
 
-    lines: Iterable[Line | Block] = ()
+    lines: Iterable[Line | Written | Block] = ()
     files: Mapping[str, str | bytes | Iterable[str]] = field(default_factory=dict)
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
@@ -127,6 +153,10 @@ class Answer:
     stopped: BaseException | None = None
     text: str | None = None
     breaks: bool = False
+    bare: bool = False
+    listed: bool = True
+    gone: Collection[str] | None = None
+    defects: Sequence[BaseException] = ()
 
 
 @dataclass(frozen=True)
@@ -199,6 +229,24 @@ class Needed:
             yield Unfit(self.option, "missing-option", message, self.hint)
 
 
+@dataclass(frozen=True)
+class Among:
+    """An option that says something only where a ``word`` is on the list of another one, and why."""
+
+    option: str
+    other: str
+    word: str
+    why: str
+    hint: str
+
+    def unfit(self, options: Collection[str]) -> Iterator[Unfit]:
+        """Where that list was given without it."""
+        lists = [text.removeprefix(f"{self.other} ") for text in options if text.startswith(f"{self.other} ")]
+        words = {word.strip() for text in lists for word in text.split(",")}
+        if self.option in options and lists and words.isdisjoint((self.word, "all")):
+            yield Unfit(self.option, "conflicting-options", self.why, self.hint)
+
+
 class NotFit(Exception):
     """A request that does not go with what was derived first."""
 
@@ -250,9 +298,9 @@ class Study(Generic[R, F]):
     ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
     not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
     go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
-    seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``together`` compares the
-    results of several descriptions, where they may be asked about at once.  ``rare``: fields whose options stand
-    in ``mbsym explain`` where ``--help`` would fill more than a screen.
+    seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``several``: whether many
+    descriptions, and folders of them, may be asked about at once; ``together`` compares their results.  ``rare``:
+    fields whose options stand in ``mbsym explain`` where ``--help`` would fill more than a screen.
     """
 
     name: str
@@ -272,7 +320,8 @@ class Study(Generic[R, F]):
     document: Callable[[Asked, R, F], Document] | None = None
     timed: bool = False
     letters: bool = False
-    pairs: Sequence[Apart | Needed] = ()
+    pairs: Sequence[Apart | Needed | Among] = ()
+    several: bool = False
     together: Callable[[Sequence[tuple[Asked, R, F]]], Iterable[Block]] | None = None
     rare: Collection[str] = ()
 

@@ -244,5 +244,6 @@ STUDY = Study(
     refusal,
     constraints=True,
     out=Folder("Print only the recommendation.", json=True),
+    several=True,
     together=together,
 )

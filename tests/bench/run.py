@@ -320,7 +320,7 @@ def measure_command(path: str, arm: str | None = None) -> list[str]:
 #: What a run stands on, each with what comes before: nothing that is written can be quicker.
 FLOORS = {
     "Python starts": "pass",
-    "imports": "import mbsym_cli.process, mbsym_cli.reports, mbsym.analysis, mbsym.source.document, "
+    "imports": "import mbsym_cli.process, mbsym.studies.run, mbsym_cli.study, mbsym.analysis, mbsym.source.document, "
     "mbsym.report.latex.report, mbsym.report.html.report, mbsym.report.wolfram_report, "
     "mbsym.report.code.python_module, mbsym.report.code.c_source, mbsym.report.results_json",
     "everything derived and checked": "import os, pathlib\n"

@@ -173,16 +173,16 @@ def test_in_a_whole_file(name: str, lost: set[str], tmp_path: Path, monkeypatch:
 
 
 def test_in_one_file_of_a_batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from mbsym_cli import reports
+    from mbsym.report import whole_run
 
-    honest = reports.derive_all
+    honest = whole_run.derive_all
 
     def derive(analysis: Any, *others: Any) -> None:
         if analysis.system.name == "first":
             broken()
         honest(analysis, *others)
 
-    monkeypatch.setattr(reports, "derive_all", derive)
+    monkeypatch.setattr(whole_run, "derive_all", derive)
     for name in ("first", "second"):
         (tmp_path / f"{name}.yaml").write_text(PENDULUM.read_text().replace("Simple pendulum", name))
     done = run(tmp_path, "-o", tmp_path / "out", "-f", "json", "-p", "1")

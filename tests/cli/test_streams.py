@@ -97,7 +97,7 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
     assert shell(f'{gone} mbsym check "$P"', tmp_path).returncode == 0
     done = shell(f'{gone} mbsym run "$P" -f json -p 1', tmp_path)
     assert done.returncode == 1
-    assert "the reports cannot be written" in done.stderr
+    assert "the results cannot be written" in done.stderr
     assert shell(f'{gone} mbsym run "$P" -f json -p 1 -o "$OUT"', tmp_path, OUT=str(tmp_path / "out")).returncode == 0
     for command in ("simulate -t 1 -s theta=1", "tradeoff -t 1 -s theta=1", "extremes -s theta=1"):
         done = shell(f'{gone} mbsym {command} "$P"', tmp_path)
@@ -200,7 +200,7 @@ def test_a_signal_during_a_batch_leaves_whole_reports(tmp_path: Path) -> None:
     child.terminate()
     _, said = child.communicate(timeout=30)
     assert child.returncode == 143, said
-    assert said == "interrupted; what has been written is whole\n"
+    assert said == f"{SYSTEMS}: interrupted; what has been written is whole\n"
     names = {
         "report.tex",
         "appendix.tex",

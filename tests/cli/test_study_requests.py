@@ -21,6 +21,7 @@ from mbsym.expressions.place import Span
 from mbsym.studies.lyapunov import Request as LyapunovRequest
 from mbsym.studies.request import Flag, Kind, Number, Values, Whole, Word, duration, fields_of, wrong
 from mbsym.studies.study import (
+    Among,
     Answer,
     Apart,
     Asked,
@@ -214,6 +215,69 @@ def test_a_single_file(text: str | None, code: int, tmp_path: Path) -> None:
 def test_json_takes_the_place_of_lines(tmp_path: Path) -> None:
     done = run(planted(json=lambda asked, request, found: "{}\n"), "--time", 1, "--json", "--out", tmp_path)
     assert (done.exit_code, done.stdout) == (0, "{}\n")
+
+
+def test_several_descriptions_each_in_a_folder_of_its_own(tmp_path: Path) -> None:
+    """Of one name, too; a folder stands for those in it; what is wrong whatever the description is, is told once."""
+    for name in ("first", "second"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "same.yaml").write_text(PENDULUM.read_text(encoding="utf-8"), encoding="utf-8")
+    command = command_of(planted(several=True))
+    words = [str(tmp_path / "first"), str(tmp_path / "second"), "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(command, [*words, "--time", "2", "--set", "l=3"], standalone_mode=False)
+    assert done.exit_code == 0, done.output
+    assert {x.relative_to(tmp_path / "out").as_posix() for x in (tmp_path / "out").rglob("found.txt")} == {
+        "same/found.txt",
+        "same.yaml/found.txt",
+    }
+    done = CliRunner().invoke(command, [*words, str(tmp_path / "lost.yaml"), "--rows", "1"], standalone_mode=False)
+    assert done.exit_code == 2
+    assert done.stderr.count("--time: error") == done.stderr.count("--rows: error") == 1
+    assert "lost.yaml: error[unreadable]" in done.stderr
+    assert "options: 2 errors; nothing was written." in done.stderr
+
+
+def test_what_goes_wrong_with_one_of_several_costs_that_one(tmp_path: Path) -> None:
+    """And what was contained meanwhile is told of each, once; nothing stands around lines that are to stand alone."""
+    for name in ("first", "second"):
+        (tmp_path / f"{name}.yaml").write_text(PENDULUM.read_text(encoding="utf-8"), encoding="utf-8")
+    twice = [ZeroDivisionError("ours"), ZeroDivisionError("ours")]
+    study = planted(Answer((line("alone"),), {"found.txt": "1"}, code=Exit.FAILED, bare=True, defects=twice))
+
+    def derive(asked: Asked, request: Request, watch: Watch) -> float:
+        if "first" in asked.file:
+            raise ValueError("lost")
+        return 0.0
+
+    command = command_of(Study(**{**vars(study), "derive": derive, "several": True}))
+    words = [str(tmp_path), "--time", "1", "--set", "l=3", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(command, words, standalone_mode=False)
+    assert (done.exit_code, done.stdout) == (1, "alone\n")
+    assert [text.partition("yaml: ")[2] for text in done.stderr.splitlines()] == [
+        "internal error, please report it: ValueError: lost",
+        "internal error, please report it: ZeroDivisionError: ours",
+    ]
+
+
+def test_an_option_that_needs_a_word_of_a_list() -> None:
+    """It is there where the list was left out, or has all; else that is said."""
+    study = planted(pairs=[Among("--loud", "--shape", "flat", "only what is flat is loud", "take flat")])
+    done = run(study, "--time", 1, "--loud", "--shape", "round")
+    assert "--loud: error[conflicting-options]: only what is flat is loud\n  hint: take flat\n" in done.stderr
+    for words in (("--loud",), ("--loud", "--shape", "flat"), ("--shape", "round")):
+        assert "only what is flat" not in run(study, "--time", 1, *words).stderr
+
+
+def test_a_run_in_python_gives_the_files_of_the_command(tmp_path: Path) -> None:
+    command = ["run", str(PENDULUM), "--set", "l=3", "--format", "latex,json", "--out", str(tmp_path)]
+    assert CliRunner().invoke(main, command).exit_code == 0
+    files = mbsym.run(PENDULUM, formats=("latex", "json"), values={"l": 3}).files
+    assert {"report.tex", "results.json", "fragments/stability.tex"} <= set(files)
+    assert all((tmp_path / name).read_text(encoding="utf-8") == text for name, text in files.items())
+    printed = CliRunner().invoke(main, [*command, "--json"]).stdout
+    assert printed == files["results.json"]
+    with pytest.raises(ValueError, match="there is no problem 99"):
+        mbsym.run(PENDULUM, problems=(1, 99))
 
 
 @pytest.mark.parametrize("name", STUDIES)

@@ -311,3 +311,14 @@ def test_energies_of_parts_that_do_not_know_each_other(potential: str, damping: 
     assert all(one.status is Certainty.PROVED for one in energies)
     check = "verified numerically" if "sqrt" in potential else "exact"
     assert not names or found.check("first integrals").outcome == check
+
+
+def test_how_many_energies_are_told_does_not_depend_on_the_origin():
+    """x'' = -x, y'' = -4 y with y counted from elsewhere: the whole energy is that of x and that of y and a number."""
+    for place in ("y", "2*y + 1/3"):
+        analysis = mbsym.loads(
+            "mbsym: 1\nname: bowl\nbodies:\n"
+            f"  - {{name: p, attached to: 0, connection point: [x, '{place}', 0], mass: 1, coordinates: [x, y]}}\n"
+            f"loads:\n  - potential: x**2/2 + 2*({place})**2\nmotion: {{}}\n"
+        )
+        assert len(analysis.integrals) == 2

@@ -62,7 +62,7 @@ def test_both_spellings_lose_nothing(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "words", ["α 1", '"ω₀"; γ', "a (b", "null", "~", "Ω meaning β", "value = 2", "[α", "#1", "a=b"]
+    "words", ["α 1", '"ω₀"; γ', "a (b", "null", "~", "Ω meaning β", "m² − 1", "value = 2", "[α", "#1", "a=b"]
 )
 def test_words_and_names_of_files_are_kept_letter_by_letter(words: str, tmp_path: Path) -> None:
     """Greek letters are names in the editor's text, an open bracket hides what follows, null is no text in YAML."""

@@ -543,7 +543,7 @@ def on_curve(
     root = tower.square_root(-constant / slope)
     reduced = on_pair(field, root, tower.reciprocal, size)
     j = max(range(len(positions)), key=lambda k: size(reduced.lengths[k]))
-    real = (reduced.cubic + tower.conjugate(reduced.cubic, tower.place(root))) / 2
+    real = (reduced.cubic + tower.conjugate(reduced.cubic, tower.places(root.top)[0])) / 2
     return OnCurve(resultant, slope, coefficients[0], real / (reduced.lengths[j] * 4), positions[j])
 
 

@@ -186,13 +186,15 @@ Polynomials = tuple[Polynomial, ...]
 class Case:
     """``left`` have to vanish at rest where ``zero`` vanish and ``nonzero`` do not: there J has this ``rank``.
 
-    ``pivots``: their places (row of the table that is left, constraint), one after the other.
+    ``pivots``: their places (row of the table that is left, constraint), one after the other.  ``whole``: multipliers
+    are not eliminated from ``left``, and no pivot is assumed.
     """
 
     left: Polynomials
     zero: Polynomials = ()
     nonzero: Polynomials = ()
     pivots: tuple[tuple[int, int], ...] = ()
+    whole: bool = False
 
     @property
     def rank(self) -> int:

@@ -112,6 +112,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.HIGHER_MINIMUM: (
         "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy."
     ),
+    Because.HIGHER_MINIMUM_AND_COMPLETE: (
+        "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy, and "
+        "dissipation is complete."
+    ),
     Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order [[1]] decide.",
     Because.NO_FORCES: (
         "The (changed) potential energy is constant, and no gyroscopic forces act: every position is one of rest, and "

@@ -189,7 +189,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "contents": contents(known, writer.document),
         "problems": problems,
         "diagram": lambda: diagram(system, names, escaped, tongue.say("inertial frame"), form.picture),
-        "cyrillic": tongue.name == "ru" or is_cyrillic(system),
+        "cyrillic": is_cyrillic(system, tongue.say("Stability")),
     }
     return {"tex": escaped}, values
 

@@ -111,6 +111,10 @@ class Writer:
         return self.inline(value.text)
 
     @inline.register
+    def _(self, value: content.Under) -> str:
+        return f"\\hspace*{{1em}}{self.inline(content.Phrase(value.parts))}"
+
+    @inline.register
     def _(self, value: content.Elsewhere) -> str:
         return self.inline(value.link)
 
@@ -363,7 +367,7 @@ class Writer:
     def _(self, value: content.Facts) -> str:
         items = ""
         for fact in value.items:
-            lines = ";\\newline ".join(map(self.inline, fact.lines))
+            lines = ";\\newline ".join(map(self.inline, fact.lines)).replace(":;", ":")
             items += f"\\item {self.inline(fact.name)}: {lines.removesuffix('.')}.\n"
         return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{items}\\end{{itemize}}\n"
 
@@ -580,8 +584,9 @@ def spared(text: str) -> str:
     return re.sub(r"\n{3,}", "\n\n", text)
 
 
-def is_cyrillic(system: System) -> bool:
-    texts = [system.name, system.description, system.source, *(item.meaning for item in system.parameters)]
+def is_cyrillic(system: System, word: str) -> bool:
+    """Whether the report, whose language has that word, or what the description says has Cyrillic letters."""
+    texts = [word, system.name, system.description, system.source, *(item.meaning for item in system.parameters)]
     texts += [item.meaning for item in system.prescribed] + [body.name for body in system.bodies]
     texts += [claim.place for claim in system.claims]
     return any("\u0400" <= c <= "\u045f" for text in texts for c in text)

@@ -2,8 +2,7 @@
 
 A problem's module is found by its attribute: ``content(results)`` is what reports and the terminal say of it,
 ``data(found, system, write)`` its section of results.json, and of problems 9 to 12 ``formulas(found, system)`` what
-model.py has.  Its part of report.wl is a template of that name in
-``templates/wolfram``.
+model.py has.  What report.wl has beside the words is a template of that name in ``templates/wolfram``, if there is one.
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ class Request:
     by: Annotated[str, Word("HOW", "regions (exact), or boxes.", choices=ROUTES, what="route")] = "regions"
     locate: Annotated[Path | None, Place("CSV", "Points: where each lies, the verdict.")] = None
     format: Annotated[tuple[str, ...], formats("Files to write.", FORMATS)] = FORMATS
-    language: Annotated[str | None, language("Of picture and map.tex: en, ru, es.")] = None
+    language: Annotated[str | None, language("Of picture and map.tex")] = None
 
     @property
     def axes(self) -> tuple[Axis, ...]:

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 from mbsym.expressions.message import Message
 from mbsym.studies.described import Source, analysis_of, laws_of, public
 from mbsym.studies.request import (
+    LEAST_ERROR,
+    MOST_ERROR,
     Errors,
     Flag,
     Formulas,
@@ -45,9 +47,6 @@ ARITHMETIC = ("float64", "float32", "extended")
 
 #: No arithmetic here is finer, and nothing coarser is a solution.
 FINEST, COARSEST = 1e-19, 0.1
-
-#: Errors that can be asked for: nothing here is finer, and nothing coarser says anything about a motion.
-LEAST_ERROR, MOST_ERROR = 1e-17, 0.5
 
 #: ``--certify`` without a number; the narrowest and the widest that can be asked for.
 USUAL_WIDTH, NARROWEST, WIDEST = "1e-10", 1e-100, 1e-3
@@ -275,7 +274,7 @@ class Command(Request):
         tuple[str, ...],
         Names("NAMES", "Initial values that stay while the others are fitted to the constraints.", separated=True),
     ] = ()
-    format: Annotated[tuple[str, ...], formats("", FORMATS)] = ("csv", "svg", "png")
+    format: Annotated[tuple[str, ...], formats("", FORMATS)] = ("csv", "png")
     bodies: Annotated[bool, Flag(None, "What each body does, in bodies.csv; the same as format bodies-csv.")] = False
     animate: Annotated[bool, Flag(None, "animation.html and animation.gif; the same as formats html,gif.")] = False
     verbose: Annotated[bool, Flag(None, "Tell how it was done, too: method, setting, work, what rests.", "-v")] = False

@@ -74,10 +74,10 @@ def _motion(context: Asked, request: Command, result: Motion) -> Answer:
     how = method_lines(run) if request.verbose else ()
     lines: list[Line | Block] = [facts((*result_lines(run, context.file), *how))]
     if result.derivatives is not None:
-        from mbsym.report.runs.sensitivity_csv import sentences  # few ask for them
+        from mbsym.report.runs.orbit_files import sensitivity_sentences  # few ask for them
 
         say = Language(run.system.language).say
-        lines += [heading(say(Message("derivatives"))), facts(sentences(result.derivatives))]
+        lines += [heading(say(Message("derivatives"))), facts(sensitivity_sentences(result.derivatives))]
     last = [] if request.accuracy is None else _repeat(context, request, run.request)
     complaints, code = _ended(run, context.folder)
     if code is Exit.OK:
