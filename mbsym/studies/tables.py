@@ -295,7 +295,8 @@ def equilibria(
     if missing:
         raise ValueError(f"no number for {', '.join(missing)}")
     equilibrium_set = relative_equilibria(system, numbers, within)
-    names = system.coordinates
+    rates = {x.name for each in equilibrium_set.equilibria for x in each.values if x.name in system.velocities}
+    names = (*system.coordinates, *(name for name in system.velocities if name in rates))
 
     def row(equilibrium: Any) -> tuple[object, ...]:
         known = {item.name: item.value for item in equilibrium.values}

@@ -101,6 +101,8 @@ def test_a_snakeboard_circles_with_its_trucks_turned() -> None:
     assert place["theta_dot"] == pytest.approx(-math.tan(place["phi"]) / 0.2)
     assert place["y_dot"] == 0
     assert column(listed(shipped("snakeboard")), "phi") == pytest.approx([0, math.pi])
+    table = mbsym.equilibria(SYSTEMS / "snakeboard.yaml").table
+    assert list(table["y_dot"]) == [0, 0]
 
 
 @pytest.mark.parametrize(("driven", "rate"), [("a", "w"), ("b", "2*w")])
