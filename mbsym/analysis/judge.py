@@ -11,6 +11,8 @@ Relations that give coordinates explicitly are put in before 2, and displacement
 coordinates: the motion does not know which coordinates tell it.
 Of other constraints 2 and 3 have the manifold that they leave (``higher.on_manifold``).
 
+A family of rests that explains all zero roots, and equations that know no other coordinates, come last.
+
 Step 3 is asked, too, where an energy that does not grow shows stability and dissipation of higher order may make it
 asymptotic.
 """
@@ -112,6 +114,8 @@ class Judge:
         By step 2 only rational values are judged.
         """
         whole = self._together(verdict, values)
+        if whole.word.open and self.may_add(whole):
+            whole = higher.by_family_of_rests(self.analysis, values) or whole
         if not (whole.word.open and self.may_add(whole) and self._parts):
             return whole
         try:

@@ -231,6 +231,15 @@ PLANES = [
     plane("the same by one force", forces("-4*(x**2 + y**2)*x - x_dot", "-4*(x**2 + y**2)*y"), "stable",
           lambda t, q, v: -4 * np.sum(q * q) * q - np.array([v[0], 0])),
     plane("trough with a quartic crest", potential("x**2/2 - y**4/4"), "unstable, critical", decided=False),
+    # rests fill a line, along which one root is zero, all others are to the left (Lyapunov-Malkin)
+    plane("trough that narrows, damped", potential("x**2/2 + x**2*y**2") + rayleigh("(x_dot**2 + y_dot**2)/2"),
+          "asymptotic, beside other rests",
+          lambda t, q, v: -np.array([q[0] + 2 * q[0] * q[1]**2, 2 * q[0]**2 * q[1]]) - v),
+    plane("skew trough that narrows, damped", potential("(x - y)**2*(1 + y)") + rayleigh("(x_dot**2 + y_dot**2)/2"),
+          "asymptotic, beside other rests"),
+    # no trough: along x = -y^3 the potential is -y^6/2
+    plane("no trough, damped", potential("x**2/2 + x*y**3") + rayleigh("(x_dot**2 + y_dot**2)/2"),
+          "unstable, critical", decided=False),
     # equations that do not know each other: what one of them does the whole does, whatever the other
     plane("cubic slope beside a damped spring", potential("x**2/2 + y**3/3") + rayleigh("x_dot**2/2"),
           "unstable, critical", lambda t, q, v: -np.array([q[0] + v[0], q[1]**2])),

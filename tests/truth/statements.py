@@ -22,6 +22,7 @@ GYROSCOPIC = "gyroscopically stabilised only"
 UNSTABLE = "unstable"
 DRIFTS = "stable but for a drift of cyclic coordinates"
 ASYMPTOTIC_BUT_DRIFTS = "asymptotically stable but for a drift of cyclic coordinates"
+REPLACED = "asymptotically stable but for a change of the steady motion"
 TURNED = "asymptotically stable but for a rotation of space"
 NOTHING = ("undecided", "depends on the parameters")
 
@@ -39,11 +40,12 @@ TRUE_OF: Mapping[str, tuple[str, ...]] = {
     "asymptotic, drifts": (ASYMPTOTIC_BUT_DRIFTS, DRIFTS, CRITICAL),
     "asymptotic, displaced": (ASYMPTOTIC_BUT_DRIFTS, DRIFTS, STABLE, CRITICAL),  # what is displaced stays there
     "stable, displaced": (STABLE, DRIFTS, CRITICAL),
+    "asymptotic, beside other rests": (REPLACED, STABLE, CRITICAL),
     "turned": (TURNED, CRITICAL),
     "unknown": (),
     "time-dependent": (),
 }
-WORDS = {ASYMPTOTIC, STABLE, CRITICAL, GYROSCOPIC, UNSTABLE, DRIFTS, ASYMPTOTIC_BUT_DRIFTS, TURNED, *NOTHING}
+WORDS = {ASYMPTOTIC, STABLE, CRITICAL, GYROSCOPIC, UNSTABLE, DRIFTS, ASYMPTOTIC_BUT_DRIFTS, REPLACED, TURNED, *NOTHING}
 
 
 @dataclass(frozen=True)

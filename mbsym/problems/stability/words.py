@@ -63,7 +63,8 @@ MEANINGS = {
         "where it comes back"
     ),
     Word.ASYMPTOTIC_BUT_STEADY: (
-        "of a system with constraints on velocities: they come to a steady motion near by, of another speed "
+        "of a system with constraints on velocities, or with rests side by side: they come to a steady motion near by, "
+        "of another speed "
         "or at another place"
     ),
     Word.STABLE: (
