@@ -19,6 +19,7 @@ TOPICS = {
     "constraints": "the kinds of constraint and their keys",
     "expressions": "what a formula may hold",
     "abbreviations": "the author's letters, in claims and in results",
+    "plain text": "the labels of the description editor's text",
     "claims": "how printed formulas are checked, and the kinds of claim",
 }
 
@@ -28,8 +29,8 @@ TOPICS = {
 def command(topic: tuple[str, ...]) -> None:
     """Print what problem TOPIC (a number) does and the formula it uses; without TOPIC, the list of problems and topics.
 
-    The topics description, loads, constraints, expressions, abbreviations and claims tell what may stand in a
-    description.  TOPIC may also be a command, a verdict, a theorem, a condition, a key or kind of a
+    The topics description, loads, constraints, expressions, abbreviations, plain text and claims tell what may stand
+    in a description.  TOPIC may also be a command, a verdict, a theorem, a condition, a key, label or kind of a
     description.
 
     \b
@@ -55,10 +56,8 @@ def command(topic: tuple[str, ...]) -> None:
         near = _near(word)
         known = f"did you mean {' or '.join(near)}?" if near else f"problems are numbered {ranges()}"
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
-        message = (
-            f"nothing is called {word}: no problem, topic, command, verdict, theorem, condition, key or kind; {known}"
-        )
-        click.echo(message, err=True)
+        kinds = "no problem, topic, command, verdict, theorem, condition, key, label or kind"
+        click.echo(f"nothing is called {word}: {kinds}; {known}", err=True)
         sys.exit(Exit.BAD_INPUT)
 
 
@@ -69,14 +68,17 @@ def explanations(word: str) -> list[str]:
 
     if word in TOPICS:
         return [_topic(word)]
-    if word.isdigit() and int(word) in PROBLEMS:
-        return [PROBLEMS[int(word)].explanation]
-    return [*_command(word), *_verdict(word), *_theorem(word), *_condition(word), *meanings(word)]
+    problems = [problem for n, problem in PROBLEMS.items() if word in (str(n), problem.title)]
+    if problems:
+        return [problem.explanation for problem in problems]
+    return [*_command(word), *_verdict(word), *_theorem(word), *_condition(word), *_term(word), *meanings(word)]
 
 
 def _as_known(word: str) -> str:
-    """The word as it is written, whatever its capitals; nothing where there is none."""
-    return next((known_word for known_word in known_words() if known_word.casefold() == word.casefold()), "")
+    """The word as it is written, whatever its capitals, its number and its index; nothing where there is none."""
+    bare = re.sub(r"[ _]\d+\b.*", "", word.casefold())  # minor 2 of K
+    forms = (word.casefold(), word.casefold().removesuffix("s"), f"{word.casefold()}s", bare)
+    return next((known for form in forms for known in known_words() if known.casefold() == form), "")
 
 
 def _near(word: str) -> list[str]:
@@ -91,8 +93,11 @@ def known_words() -> list[str]:
     from mbsym.source.topics import words
     from mbsym_cli.main import COMMANDS
 
+    terms = [name for names in TERMS for name in names.split(", ")]
     theorems = [*(theorem.name for theorem in THEOREMS), *(order.value for order in HigherOrder if order)]
-    return list(dict.fromkeys([*TOPICS, *COMMANDS, *(word.value for word in Word), *theorems, *CONDITIONS, *words()]))
+    return list(
+        dict.fromkeys([*TOPICS, *COMMANDS, *(word.value for word in Word), *theorems, *CONDITIONS, *terms, *words()])
+    )
 
 
 def _command(word: str) -> Iterator[str]:
@@ -164,6 +169,57 @@ def _narrowed(text: str) -> str:
     return "\n".join(wrapped(line, width, _margin(line)) for line in lines)
 
 
+#: Other words of reports, and of what commands print; "a, b" are two words for one thing.
+TERMS = {
+    "proved": "an identity of exact algebra, or a theorem all of whose hypotheses are shown",
+    "verified numerically": "holds at random values, exactly or in enclosures of many digits: almost certain, no proof",
+    "measured": "the difference from a better run",
+    "estimated": "by a scaling, or by the equation of the difference",
+    "undecided": "not known: for want of a theorem, of values of parameters, or of budget",
+    "decided exactly": "with the values of the description as rational numbers; nothing is rounded",
+    "rigorous enclosure, decided by rigorous enclosures": "in intervals that contain the exact numbers",
+    "self-check": "every result is derived a second time, by another route, and compared; see 'mbsym run -v'",
+    "degrees of freedom": "coordinates less independent constraints on velocities",
+    "cyclic": "a coordinate that L = T + U does not contain; where no other force acts on it, its momentum is constant",
+    "force function": "U, minus the potential energy: its derivatives are the forces",
+    "generalised energy": "h = sum p q' - L, constant where time does not enter and no other forces act",
+    "momentum": "of a coordinate q: p = dT/dq'",
+    "lambda, multiplier, reaction": "lambda_k is the multiplier of row k of the constraints, which gives its reaction",
+    "holonomic": "a constraint between positions, or one that follows from such",
+    "first approximation": "the linear equations M q'' + (D + G) q' + (K + N) q = 0 about a motion: problem 5",
+    "subsystem": "coordinates whose linear equations contain no others",
+    "characteristic polynomial": "det(lambda^2 M + lambda (D + G) + K + N); its roots are the eigenvalues",
+    "eigenvalue": "a root lambda of the characteristic polynomial: small motions grow or decay as e^(lambda t)",
+    "constant term": "of the characteristic polynomial, det(K + N): a root passes through zero where it vanishes",
+    "zero root": "an eigenvalue 0: an equilibrium that is not isolated, a cyclic coordinate, or a border of stability",
+    "double root": "two equal eigenvalues: on the imaginary axis flutter may begin there",
+    "divergence": "instability by a real positive eigenvalue: away without oscillation",
+    "flutter": "instability by a pair of complex eigenvalues: oscillations that grow",
+    "signature, degree of instability": "the number of negative eigenvalues of K (Poincare)",
+    "gyroscopic forces": "G q' with G skew: they do no work",
+    "circulatory forces": "N q with N skew: they have no potential",
+    "complete dissipation": "D positive definite: every motion loses energy",
+    "Jordan block": "of a multiple root with fewer eigenvectors: solutions have a factor t",
+    "relative equilibrium": "constant coordinates, while what is prescribed, and turns steadily, goes on",
+    "fold": "over a parameter two equilibria meet, and beyond it there are none",
+    "pitchfork": "over a parameter one equilibrium becomes three, or three become one",
+    "transcritical, transcritical point": "two branches of equilibria cross",
+    "vertical tangent": "a branch of equilibria is steep there, and goes on",
+    "isolated point": "one equilibrium at this value of the parameter, and none near it",
+    "controllability": "whether the inputs can lead every state to zero (Kalman): problem 8",
+    "feedback": "inputs as a linear function of the state: problem 8",
+    "Lyapunov function": "positive about a motion, and never growing along those near it",
+    "base parameters": "the smallest set of sums of inertial parameters that determines all forces: 'mbsym regressor'",
+    "member": "one motion of an ensemble ('mbsym simulate --vary')",
+    "tolerance": "the error that a method with a variable step allows in each step, relative to the size of the state",
+}
+
+
+def _term(word: str) -> Iterator[str]:
+    """Another word of reports."""
+    yield from (f"{names}: {meaning}." for names, meaning in TERMS.items() if word in names.split(", "))
+
+
 #: Lines of paragraphs are longer than this, the last ones apart.
 FULL = 95
 
@@ -182,5 +238,5 @@ def _topic(name: str) -> str:
         from mbsym.problems import claims
 
         return f"{str(claims.__doc__).strip()}\n\n{topics.claim_kinds()}"
-    text: str = getattr(topics, name)()
+    text: str = getattr(topics, name.replace(" ", "_"))()
     return text

@@ -17,6 +17,7 @@ from click.core import ParameterSource
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint
+from mbsym.expressions.safe import UNBROKEN
 from mbsym.model.system import LANGUAGES, System
 from mbsym.report.content import Block
 from mbsym.report.language import Language
@@ -315,7 +316,7 @@ class _Run:
             return
         loud = not self.quiet
         if loud and not answer.bare:
-            seconds = f", {self._seconds():.2f} s" if self.study.timed else ""
+            seconds = f",{UNBROKEN}{self._seconds():.2f}{UNBROKEN}s" if self.study.timed else ""
             tell((context.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
         for block in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(block, Line) and (loud or block.always):

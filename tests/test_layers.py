@@ -40,7 +40,7 @@ BELOW = {
     "batch": "expressions algebra model source formulas problems analysis report sweeps",
     "diff": "expressions algebra formulas report",
     "serving": "expressions algebra model source formulas problems analysis maps numerics simulation report editing"
-    " picture __init__",
+    " batch picture __init__",
     "__init__": "studies",
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report studies"
     " batch diff editing maps sweeps picture serving __init__",

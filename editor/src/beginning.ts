@@ -3,6 +3,7 @@
 import { make } from "./elements.js";
 import type { Model } from "./model.js";
 import type { Format, View } from "./seam.js";
+import { wordsOf } from "./server.js";
 
 /** What the server begins with: a joint by its name, an example (null: an empty description), a text. */
 type Beginning = { joint: string } | { example: string | null } | { pasted: string };
@@ -22,7 +23,7 @@ export async function begin(model: Model, beginning: Beginning, said: string): P
     model.say(said);
     return true;
   } catch (failure) {
-    model.say(failure instanceof Error ? failure.message : String(failure));
+    model.say(wordsOf(failure));
     return false;
   }
 }

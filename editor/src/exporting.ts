@@ -2,6 +2,7 @@
 
 import { make } from "./elements.js";
 import type { Model } from "./model.js";
+import { wordsOf } from "./server.js";
 
 export function exporting(model: Model): HTMLElement {
   const formats = (model.file as unknown as { formats?: { name: string; title: string }[] }).formats ?? [];
@@ -17,7 +18,7 @@ export function exporting(model: Model): HTMLElement {
       const answer = await model.request<{ files: string[]; words: string[] }>("export", { to: format.value, language: language.value });
       said.textContent = [`Written: ${answer.files.join(", ")}`, ...answer.words].join(". ");
     } catch (failure) {
-      said.textContent = failure instanceof Error ? failure.message : String(failure);
+      said.textContent = wordsOf(failure);
     }
     button.disabled = false;
   }

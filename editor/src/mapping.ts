@@ -1,8 +1,10 @@
 // The map of stability over one or two parameters with ranges, others at numbers.
 
 import { make } from "./elements.js";
+import { Job } from "./job.js";
 import type { Model } from "./model.js";
 import type { Told } from "./seam.js";
+import { wordsOf } from "./server.js";
 
 interface Axis {
   name: HTMLSelectElement;
@@ -46,8 +48,7 @@ export function mapping(model: Model): HTMLElement {
   const said = make("p", { role: "status" });
   const place = make("div", { class: "map-place" });
   const button = make("button", { type: "button", id: "map-begin", click: () => void begin() }, "Draw the map");
-  let job: string | null = null;
-  let early: Told[] = [];
+  const job = new Job(model, hear, () => void begin());
 
   function names(): void {
     const all = namesOf(model);
@@ -70,24 +71,14 @@ export function mapping(model: Model): HTMLElement {
     const range = (one: Axis): object => ({ name: one.name.value, low: one.low.value.trim(), high: one.high.value.trim() });
     said.textContent = "Begun …";
     place.replaceChildren();
-    early = [];
     try {
-      const body = { x: range(x), ...(y.name.value ? { y: range(y) } : {}), set: values };
-      job = (await model.request<{ job: string }>("map", body)).job;
-      early.filter((told) => told.job === job).forEach(hear);
-      early = [];
+      await job.begin("map", { x: range(x), ...(y.name.value ? { y: range(y) } : {}), set: values });
     } catch (failure) {
-      said.textContent = failure instanceof Error ? failure.message : String(failure);
+      said.textContent = wordsOf(failure);
     }
   }
 
   function hear(told: Told): void {
-    if (told.kind === "lost" && job !== null) void begin();
-    if (told.job === undefined) return;
-    if (told.job !== job) {
-      early = [...early.slice(-20), told];
-      return;
-    }
     if (told.kind === "map") {
       const image = String(told["image"]);
       const about = y.name.value ? `${x.name.value} and ${y.name.value}` : x.name.value;
@@ -95,11 +86,9 @@ export function mapping(model: Model): HTMLElement {
       said.textContent = ((told["words"] as string[] | undefined) ?? []).join("; ") || `Over ${about}, of the text as it was then.`;
     } else if (told.kind === "progress") said.textContent = `${String(told["words"])} …`;
     else if (told.kind === "failed" || told.kind === "cancelled") said.textContent = `No map: ${String(told["words"])}.`;
-    if (["done", "failed", "cancelled"].includes(told.kind)) job = null;
   }
 
   model.on("view", names);
-  model.on("told", hear);
   return make(
     "details",
     { class: "mapping" },

@@ -10,7 +10,7 @@ import { EditorView } from "@codemirror/view";
 import { isUnbegun } from "./beginning.js";
 import { Listeners } from "./listeners.js";
 import type { Body, Changed, Complaint, Edit, FileState, Format, Operation, Path, Told, View } from "./seam.js";
-import { Away, get, post, Refused } from "./server.js";
+import { Away, Refused, get, post, wordsOf } from "./server.js";
 
 /** So long after a key the text is looked at: short, because a look has to be shown within 100 ms of the key. */
 const LOOK_AFTER = 15;
@@ -344,7 +344,7 @@ export class Model extends Listeners<Events> {
       // From the first key that this look is about until everything is told: read by the tests.
       performance.measure("mbsym:look", { start: begun, end: performance.now() });
     } catch (failure) {
-      if (!(failure instanceof Away)) this.say(failure instanceof Error ? failure.message : String(failure));
+      if (!(failure instanceof Away)) this.say(wordsOf(failure));
     } finally {
       this.looking = null;
     }
@@ -385,7 +385,7 @@ export class Model extends Listeners<Events> {
       try {
         answer = await this.request<Changed>("change", { operations });
       } catch (failure) {
-        this.say(failure instanceof Error ? failure.message : String(failure));
+        this.say(wordsOf(failure));
         return { done: false, complaints: [] };
       }
       // Typed on meanwhile: the places in the answer are of another text.
@@ -442,7 +442,7 @@ export class Model extends Listeners<Events> {
       if (failure instanceof Refused && failure.status === 409) {
         return { saved: false, other: { digest: String(failure.body["digest"]), text: String(failure.body["text"]) } };
       }
-      this.say(failure instanceof Error ? failure.message : String(failure));
+      this.say(wordsOf(failure));
       return { saved: false, other: null };
     } finally {
       this.saving = null;
@@ -470,7 +470,7 @@ export class Model extends Listeners<Events> {
       await this.look();
       return true;
     } catch (failure) {
-      this.say(failure instanceof Error ? failure.message : String(failure));
+      this.say(wordsOf(failure));
       return false;
     }
   }

@@ -2,10 +2,12 @@
 
 import { beginnings } from "./beginning.js";
 import { make } from "./elements.js";
+import { Job } from "./job.js";
 import type { Model } from "./model.js";
 import type { Equilibria, Modes, Motion, Picture } from "./picture/types.js";
 import { Viewer } from "./picture/viewer.js";
 import type { Told } from "./seam.js";
+import { wordsOf } from "./server.js";
 
 /** So long after a change of the text it is drawn: sooner it would only flicker. */
 const DRAW_AFTER = 150;
@@ -41,10 +43,8 @@ export function panel(host: HTMLElement, model: Model): void {
   let drawing: Promise<void> | null = null;
   let isDrawn = (): void => undefined;
   let wanted = 0;
-  /** Jobs that are awaited: what was begun last for each section. */
-  const jobs = new Map<Section, string>();
-  /** What was told of jobs before their names were: the answer to a request may be overtaken. */
-  let early: Told[] = [];
+  const jobs = (Object.keys(SECTIONS) as Section[]).map((section) => [section, new Job(model, (told) => hear(section, told), () => void begin(section))] as const);
+  const jobOf = new Map(jobs);
 
   async function draw(): Promise<void> {
     asking?.abort();
@@ -63,13 +63,13 @@ export function panel(host: HTMLElement, model: Model): void {
       if (now === drawn) return;
       drawn = now;
       place.classList.remove("undrawn");
-      jobs.clear();
+      jobs.forEach(([, job]) => job.forget());
       viewer.show(answer);
       viewer.select(model.selected);
     } catch (failure) {
       if (own.signal.aborted) return;
       asked = null;
-      stale.textContent = failure instanceof Error ? failure.message : String(failure);
+      stale.textContent = wordsOf(failure);
     }
   }
 
@@ -79,29 +79,18 @@ export function panel(host: HTMLElement, model: Model): void {
     viewer.note(section, "Being computed …");
     try {
       const body = section === "motion" ? { time: time.value.trim(), set: viewer.moved() } : { set: {} };
-      const answer = await model.request<{ job: string }>(SECTIONS[section], body);
-      jobs.set(section, answer.job);
-      const before = early.filter((told) => told.job === answer.job);
-      early = [];
-      before.forEach(hear);
+      await jobOf.get(section)!.begin(SECTIONS[section], body);
     } catch (failure) {
-      viewer.note(section, failure instanceof Error ? failure.message : String(failure));
+      viewer.note(section, wordsOf(failure));
     }
   }
 
-  function hear(told: Told): void {
-    if (told.kind === "lost") [...jobs.keys()].forEach((section) => void begin(section));
-    const section = [...jobs].find(([, job]) => job === told.job)?.[0];
-    if (section === undefined) {
-      if (told.job !== undefined) early = [...early.slice(-20), told];
-      return;
-    }
+  function hear(section: Section, told: Told): void {
     if (told.kind === "motion") viewer.showMotion(told["value"] as Motion);
     else if (told.kind === "modes") viewer.showModes(told["value"] as Modes);
     else if (told.kind === "equilibria") viewer.showEquilibria(told["value"] as Equilibria);
     else if (told.kind === "failed" || told.kind === "cancelled") viewer.note(section, String(told["words"] ?? told.kind));
     else if (told.kind === "progress") viewer.note(section, String(told["words"] ?? "Being computed …"));
-    if (told.kind === "done" || told.kind === "failed" || told.kind === "cancelled") jobs.delete(section);
   }
 
   model.on("view", (view) => {
@@ -125,5 +114,4 @@ export function panel(host: HTMLElement, model: Model): void {
   });
   model.on("selection", (name) => viewer.select(name));
   model.on("theme", () => viewer.stage.ink());
-  model.on("told", hear);
 }

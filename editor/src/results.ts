@@ -4,11 +4,13 @@ import "./results.css";
 import { make } from "./elements.js";
 import { copying } from "./copying.js";
 import { exporting } from "./exporting.js";
+import { Job } from "./job.js";
 import { mapping } from "./mapping.js";
 import type { Model } from "./model.js";
 import { released } from "./pressing.js";
 import { sanitised } from "./sanitised.js";
 import type { Told } from "./seam.js";
+import { wordsOf } from "./server.js";
 
 /** Milliseconds after the last change; a text that the server has not looked at for so long is another one. */
 const DERIVE_AFTER = 350;
@@ -125,9 +127,8 @@ export function panel(host: HTMLElement, model: Model): void {
   copying(sections, model);
 
   const shown = new Map<string, Shown>();
-  let job: string | null = null;
+  const job = new Job(model, hear, () => void begin());
   let asked = 0;
-  let early: Told[] = [];
   /** What the sections are of, or will be as soon as they come: a text, and what it says. */
   let derived: string | null = null;
   let content: string | null = null;
@@ -147,7 +148,6 @@ export function panel(host: HTMLElement, model: Model): void {
   }
 
   function over(words: string): void {
-    job = null;
     cancel.disabled = true;
     outcome = words;
     if (derived !== null) status.textContent = current() ? words : EARLIER;
@@ -155,7 +155,7 @@ export function panel(host: HTMLElement, model: Model): void {
 
   async function stop(): Promise<void> {
     window.clearTimeout(timer);
-    if (job !== null) await model.post("cancel", { job }).catch(() => undefined);
+    await job.stop();
   }
 
   const sayOf = (text: string): string | null => (model.viewed === text ? (model.view?.content ?? null) : null);
@@ -173,31 +173,26 @@ export function panel(host: HTMLElement, model: Model): void {
       old = !old;
       for (const one of shown.values()) old ? one.waits() : one.stays();
     }
-    if (job === null) status.textContent = old ? EARLIER : outcome;
+    if (!job.runs) status.textContent = old ? EARLIER : outcome;
   }
 
   async function begin(): Promise<void> {
     window.clearTimeout(timer);
-    const mine = (asked += 1);
+    asked += 1;
     const text = model.text;
     const problems = boxes.filter((x) => x.box.checked).map((x) => x.problem.number);
     try {
       status.textContent = "Begun …";
-      early = [];
       const usual = boxes.every((x) => x.box.checked === x.problem.usual);
-      const answer = await model.request<{ job: string }>("derive", usual || problems.length === 0 ? {} : { problems });
-      if (mine !== asked) return;
-      job = answer.job;
-      [derived, content, old] = [text, sayOf(text), false];
-      cancel.disabled = false;
-      early.filter((told) => told.job === job).forEach(hear);
-      early = [];
+      await job.begin("derive", usual || problems.length === 0 ? {} : { problems }, () => {
+        [derived, content, old] = [text, sayOf(text), false];
+        cancel.disabled = false;
+      });
       compare();
     } catch (failure) {
-      if (mine !== asked) return;
       over("");
       derived = null; // whatever stands there: it is begun again with the next look
-      status.textContent = failure instanceof Error ? failure.message : String(failure);
+      status.textContent = wordsOf(failure);
     }
   }
 
@@ -217,12 +212,6 @@ export function panel(host: HTMLElement, model: Model): void {
   }
 
   function hear(told: Told): void {
-    if (told.kind === "lost" && job !== null) void begin();
-    if (told.job === undefined) return;
-    if (told.job !== job) {
-      early = [...early.slice(-40), told];
-      return;
-    }
     if (told.kind === "plan") planned(told["sections"] as [string, string][]);
     else if (told.kind === "section") {
       const section = told as unknown as Section;
@@ -232,13 +221,10 @@ export function panel(host: HTMLElement, model: Model): void {
       status.textContent = `${String(told["words"])} …${typeof of === "number" ? ` (${String(done)} of ${of})` : ""}`;
     } else if (told.kind === "done") over(DERIVED);
     else if (told.kind === "failed") over(`Nothing more was derived: ${String(told["words"])}.`);
-    else if (told.kind === "cancelled" && told["words"] === ALONE) {
-      job = null;
-      void begin();
-    } else if (told.kind === "cancelled") over(`Stopped: ${String(told["words"])}.`);
+    else if (told.kind === "cancelled" && told["words"] === ALONE) void begin();
+    else if (told.kind === "cancelled") over(`Stopped: ${String(told["words"])}.`);
   }
 
-  model.on("told", hear);
   model.on("text", () => {
     window.clearTimeout(unseen);
     unseen = window.setTimeout(compare, UNSEEN_AFTER);
@@ -249,7 +235,7 @@ export function panel(host: HTMLElement, model: Model): void {
     compare();
     if (!live.checked || current()) return;
     if (view.complaints.some((one) => one.severity === "error")) {
-      if (job !== null) {
+      if (job.runs) {
         void stop();
         derived = null;
       }

@@ -12,6 +12,11 @@ export class Refused extends Error {
 /** The server does not answer: stopped, or the machine sleeps. */
 export class Away extends Error {}
 
+/** What a failed request is told as. */
+export function wordsOf(failure: unknown): string {
+  return failure instanceof Error ? failure.message : String(failure);
+}
+
 async function answered<Answer>(request: Promise<Response>): Promise<Answer> {
   let response: Response;
   try {

@@ -9,6 +9,7 @@ import { Model, opened } from "./model.js";
 import { arranged } from "./panels.js";
 import { panel as picturePanel } from "./picture.js";
 import { panel as resultsPanel } from "./results.js";
+import { wordsOf } from "./server.js";
 import { statusOf } from "./status.js";
 import { extensions, panel as textPanel } from "./text.js";
 import { themeOf } from "./theme.js";
@@ -61,7 +62,7 @@ export async function start(host: HTMLElement): Promise<void> {
   try {
     model = await opened(extensions, shadow);
   } catch (failure) {
-    host.replaceChildren(make("p", { class: "waiting", role: "alert" }, failure instanceof Error ? failure.message : String(failure)));
+    host.replaceChildren(make("p", { class: "waiting", role: "alert" }, wordsOf(failure)));
     return;
   }
   document.title = `${model.file.name} — mbsym`;

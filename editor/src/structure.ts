@@ -7,6 +7,7 @@ import { addTo } from "./formitems.js";
 import { branch, FIXED } from "./layout.js";
 import type { Model } from "./model.js";
 import type { Changed, Joint, Operation, Path } from "./seam.js";
+import { wordsOf } from "./server.js";
 
 /** The name of the fixed axes for people. */
 export const FIXED_WORDS = "fixed axes (0)";
@@ -84,7 +85,7 @@ export class Structure {
     try {
       answer = await this.model.request<Changed>("change", { operations: [operation] });
     } catch (failure) {
-      this.model.say(failure instanceof Error ? failure.message : String(failure));
+      this.model.say(wordsOf(failure));
       return null;
     }
     if (answer.edits) return answer;

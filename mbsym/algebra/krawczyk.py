@@ -222,14 +222,14 @@ def _nearer(function: Function, jacobian: Jacobian, box: Box) -> Box | None:
     return tuple(narrower)
 
 
-def pivot_rows(rows: Sequence[Sequence[float]]) -> list[int]:
-    """As many rows as the rank, by Gauss's elimination with the largest pivots."""
+def pivot_rows(rows: Sequence[Sequence[Any]], least: float = 0.0) -> list[int]:
+    """As many rows as the rank, by Gauss's elimination with the largest pivots; what is below ``least`` is zero."""
     left = {i: list(row) for i, row in enumerate(rows)}
     chosen: list[int] = []
-    columns = set(range(len(rows[0])))
+    columns = set(range(len(rows[0]) if left else 0))
     while columns and left:
         size, i, k = max((abs(row[k]), i, k) for i, row in left.items() for k in columns)
-        if not 0 < size < math.inf:
+        if not least < size < math.inf:
             break
         top = left.pop(i)
         columns.discard(k)

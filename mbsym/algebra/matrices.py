@@ -8,15 +8,16 @@ prime ``nmod_mat``, balls ``arb_mat``.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 from itertools import combinations
-from typing import Any, Generic, overload
+from typing import Any, Generic, TypeVar, overload
 
 from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.failures import Failure, Limit, NoClosedForm, TooLargeError
 
+T = TypeVar("T")
 Rows = Iterable[Iterable[S]]
 Table = Sequence[Sequence[S]]
 
@@ -150,6 +151,15 @@ def components(size: int, coupled: Callable[[int, int], bool]) -> list[list[int]
             old, new = max(label[i], label[j]), min(label[i], label[j])
             label = [new if x == old else x for x in label]
     return [[i for i in range(size) if label[i] == first] for first in sorted(set(label))]
+
+
+def united(groups: Iterable[Collection[T]]) -> list[set[T]]:
+    """The unions of groups that share a member, directly or through others."""
+    sets: list[set[T]] = []
+    for group in groups:
+        touching = [other for other in sets if not other.isdisjoint(group)]
+        sets = [other for other in sets if other.isdisjoint(group)] + [set(group).union(*touching)]
+    return sets
 
 
 # --- determinants ---

@@ -70,19 +70,22 @@ class PolynomialField:
         total = self.context.constant(0)
         for place, slope in zip(self.places, self.numerators, strict=True):
             total += f.derivative(place) * slope
-        return total
+        return self._remainder(total, self._squares)
 
     def reduced(self, f: Polynomial) -> Polynomial:
-        """A remainder of f by the relations: of degree 1 at most in what stands first in each.
+        """A remainder of f by the relations: of degree 1 at most in what stands first in each, and in square roots.
 
         Leading monomials, in the variables before the parameters, share no variable and have rational coefficients, so
         it is zero if and only if f is in their ideal.
         """
-        if not self.relations:
+        return self._remainder(f, [*self._leading[1], *self._squares])
+
+    def _remainder(self, f: Polynomial, divisors: Sequence[Polynomial]) -> Polynomial:
+        if not divisors:
             return f
         f = f.project_to_context(self._leading[0])
-        for relation in self._leading[1]:
-            f = divmod(f, relation)[1]
+        for divisor in divisors:
+            f = divmod(f, divisor)[1]
         return f.project_to_context(self.context)
 
     @property
@@ -99,13 +102,35 @@ class PolynomialField:
 
     @cached_property
     def _leading(self) -> tuple[Any, list[Polynomial]]:
-        """The context with the variables first, and the relations there.
+        """The context with the variables first, square roots after them, and the relations there.
 
         What stands for a leading monomial holds lower ones only, so that a later division undoes none before it.
         """
-        context = fmpq_mpoly_ctx.get([*self.variables, *self.parameters], self.context.ordering())
+        roots = [name for name, _ in self.roots[::-1]]
+        free = [name for name in self.parameters if name not in roots]
+        context = fmpq_mpoly_ctx.get([*self.variables, *roots, *free], self.context.ordering())
         there = [relation.project_to_context(context) for relation in self.relations]
         return context, sorted(there, key=lambda relation: relation.monomial(0), reverse=True)
+
+    @cached_property
+    def _squares(self) -> list[Polynomial]:
+        """r^2 - p of every square root r, in the context of ``_leading``, each before those under it."""
+        context = self._leading[0]
+        names = context.names()
+        return [
+            context.gen(names.index(name)) ** 2 - square.project_to_context(context)
+            for name, square in self.roots[::-1]
+        ]
+
+    @cached_property
+    def root_places(self) -> list[int]:
+        """The indices of the square roots among the generators."""
+        return [self.parameters.index(name) for name, _ in self.roots]
+
+    @property
+    def free_parameters(self) -> tuple[str, ...]:
+        """Those that are no square roots."""
+        return tuple(name for name in self.parameters if name not in dict(self.roots))
 
     def at(self, values: Mapping[str, fmpq | int]) -> PolynomialField:
         """The field with numbers in place of some parameters, which are no generators any more.

@@ -203,7 +203,7 @@ class Tower(Algebra[Element]):
 
     def _apart(self, x: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
         """(g, h) with x = g^2 h, h without square factors but numbers; h = x where x holds a root."""
-        return (self._unit, x) if any(degree > 0 for degree in x.degrees()[:MOST_ROOTS]) else square_apart(x)
+        return (self._unit, x) if self.places(x) else square_apart(x)
 
     def rational(self, x: Element) -> fmpq | None:
         """The number that x is, if it is written as one."""
@@ -218,9 +218,10 @@ class Tower(Algebra[Element]):
         place = MOST_ROOTS - 1 - index
         return f"sin({_angle(*self._sines[place])})" if place in self._sines else self.squares[place]
 
-    def place(self, root: Element) -> int:
-        """Which s_k a root that was adjoined is a multiple of."""
-        return next(k for k in range(len(self.squares)) if root.top.degrees()[MOST_ROOTS - 1 - k])
+    def places(self, x: fmpq_mpoly) -> list[int]:
+        """Which s_k occur in x; one of a root that was adjoined, none of a rational one."""
+        degrees = x.degrees()
+        return [k for k in range(len(self.squares)) if degrees[MOST_ROOTS - 1 - k] > 0]
 
     def sin_cos(self, angle: LinearForm) -> tuple[Element, Element]:
         if len(angle.coefficients) == 1 and angle == LinearForm(angle.coefficients):
@@ -229,7 +230,7 @@ class Tower(Algebra[Element]):
             if share.numerator == 1 and cosine in self.parameters:
                 c = self.parameter(cosine)
                 s = self.square_root(1 - c * c)
-                self._sines[self.place(s)] = name, share.denominator
+                self._sines[self.places(s.top)[0]] = name, share.denominator
                 return s, c
         raise NoClosedForm(
             "sines and cosines of parameters or numbers in the coefficients: only square roots are exact here"

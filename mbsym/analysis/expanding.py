@@ -442,8 +442,7 @@ def _unscaled(analysis: Analysis) -> Signs:
     scales = {small.name, *(name for name, _ in small.powers)}
 
     def held(p: Any) -> bool:
-        generators = [ring.generators[k] for k in occurring([p])]
-        return any(g.name in scales or (g.argument is not None and held(g.argument)) for g in generators)
+        return any(ring.generators[k].name in scales for k in ring.held([p]))
 
     assumptions = tuple(assumption for assumption in analysis.signs.assumptions if not held(assumption[0]))
     return replace(analysis.signs, assumptions=assumptions)

@@ -104,7 +104,9 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         scene, manifold = analysis.parameters_scene, on_manifold(analysis)
         if balance.conserves and all(map(analysis.ring.vanishes, _acting(analysis))):
             return coasting(Because.ALIKE) if _alike(analysis, values) else by_geodesics()
-        return problem.by_energy(scene, analysis.system, analysis.equilibrium, manifold, balance.conserves, values)
+        damping = () if on_a_leaf(analysis) else analysis.linearisation.D.polynomials
+        equilibrium = analysis.equilibrium
+        return problem.by_energy(scene, analysis.system, equilibrium, manifold, balance.conserves, values, damping)
     except (Failure, *NOT_THERE):
         return None
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import count, pairwise
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 from flint import acb
@@ -21,9 +22,10 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.terms import evaluated, with_quotients
+from mbsym.algebra.terms import apart, evaluated, with_quotients
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
+from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Call, Expression, Negative, Operation
 from mbsym.formulas.formula import Formula
@@ -34,6 +36,7 @@ from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.scaling import Scaling
 from mbsym.model.system import SmallParameter, System, velocity_name
 from mbsym.problems.claims.oscillations import series_of
+from mbsym.problems.knowledge import signs
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.generating import graded_rows
@@ -42,10 +45,11 @@ from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
     Equations,
+    amplitude_symbol,
     oscillation,
     tower_over,
 )
-from mbsym.problems.small_parameter.result import Amplitude, Divisor, Harmonics, Oscillation
+from mbsym.problems.small_parameter.result import Amplitude, Divisor, Harmonics, Oscillation, Phase, multiples
 from mbsym.problems.vector_field import vector_field
 
 if TYPE_CHECKING:
@@ -58,10 +62,10 @@ _ATTRACTS: dict[str | None, bool] = {"negative": True, "positive": False}
 
 @dataclass(frozen=True)
 class Oscillating:
-    """An oscillation with the ring in which it is told: parameters, ``symbols`` (amplitude, constants), the phase.
+    """An oscillation with the ring in which it is told: parameters, ``symbols`` (amplitudes, constants), ``phases``.
 
     ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off; ``real``:
-    by the signs of the parameters the frequency at eps = 0 is real and not zero; ``resonances``: the divisors that are
+    by the signs of the parameters frequencies at eps = 0 are real and not zero; ``resonances``: the divisors that are
     not known to be different from zero by them.  ``real_amplitude``: so is a determined amplitude.  ``velocities``:
     variables that are rates of others.  ``attracts``: whether motions near a single cycle come closer to it for small
     eps > 0, None where that is not known, or depends.
@@ -69,7 +73,7 @@ class Oscillating:
 
     oscillation: Oscillation
     ring: Ring
-    phase: str
+    phases: tuple[str, ...]
     symbols: Mapping[str, str]
     field: PolynomialField
     taylor: bool
@@ -79,23 +83,50 @@ class Oscillating:
     attracts: bool | None = None
     velocities: tuple[str, ...] = ()
 
-    def formula(self, x: Element, ring: Ring | None = None) -> Formula:
-        """An element; in ``told_ring`` with letters for common denominators."""
+    @property
+    def phase(self) -> str:
+        """The first."""
+        return self.phases[0]
+
+    def formula(self, x: Element, ring: Ring | None = None, finely: bool = False) -> Formula:
+        """An element; in ``told_ring`` with letters for common denominators.
+
+        What stands before each product of amplitudes is in lowest terms by itself; ``finely``: and of those parameters,
+        too, by which nothing is divided.
+        """
         letters = None if ring is None else self.denominators
-        whole = self.ring if ring is None else ring
-        return Formula(whole, in_letters(self.oscillation.tower, whole, self.symbols, x, letters))
+        whole, tower = self.ring if ring is None else ring, self.oscillation.tower
+        places = [MOST_ROOTS + tower.parameters.index(amplitude_symbol(k)) for k in range(len(self.phases))]
+        places += [k for k in self._above if k not in places] if finely else []
+        gens, total = tower.context.gens(), whole.zero
+        for powers, p in apart(x.top, places).items():
+            product = prod((gens[k] ** n for k, n in zip(places, powers, strict=True)), start=p)
+            total = total + in_letters(tower, whole, self.symbols, tower.made(product, x.bottom), letters)
+        return Formula(whole, total)
 
     @cached_property
-    def denominators(self) -> tuple[tuple[Any, str], ...]:
-        """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
+    def _coefficients(self) -> list[Element]:
+        """Of all waves, and of the rates of the phases."""
         expansion = self.oscillation
         waves = [harmonics for series in expansion.series for harmonics in series] + [
             x for drift in expansion.drifts for x in drift.waves
         ]
         values = [x for wave in waves for pair in wave.waves.values() for x in pair if not x.is_zero()]
+        return [*values, *(x for phase in expansion.phases for x in phase.corrections)]
+
+    @cached_property
+    def _above(self) -> list[int]:
+        """Places of parameters that stand in no denominator and under no root."""
+        tower = self.oscillation.tower
+        below = {k for x in self._coefficients for k in occurring([x.bottom])} | {*occurring(tower.squares)}
+        return [MOST_ROOTS + k for k in range(len(tower.parameters)) if MOST_ROOTS + k not in below]
+
+    @cached_property
+    def denominators(self) -> tuple[tuple[Any, str], ...]:
+        """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
         factors: list[Any] = []
         often: list[int] = []
-        for x in [*values, *expansion.corrections]:
+        for x in self._coefficients:
             for factor, _ in x.bottom.factor()[1]:
                 if len(factor) > 1 and not any(factor.degrees()[:MOST_ROOTS]):
                     if factor not in factors:
@@ -113,30 +144,32 @@ class Oscillating:
             return self.ring
         names = [g.name for g in self.ring.generators if g.kind == "parameter" and g.name != "pi"]
         positive = [name for name in names if self.ring.is_positive(self.ring.generator("parameter", name))]
-        return Ring(
-            (), (self.phase,), [*names, *(name for _, name in self.denominators)], self.ring.angles, positive, spare=40
-        )
+        told = [*names, *(name for _, name in self.denominators)]
+        ring = Ring((), self.phases, told, self.ring.angles, positive, spare=40)
+        ring.leading = frozenset(ring.index("parameter", self.ring.generators[k].name) for k in self.ring.leading)
+        return ring
 
-    def wave(self, harmonics: Harmonics, target_ring: Ring | None = None) -> Formula:
-        """A trigonometric polynomial of the phase."""
+    def wave(self, harmonics: Harmonics, target_ring: Ring | None = None, finely: bool = False) -> Formula:
+        """A trigonometric polynomial of the phases."""
         ring = self.ring if target_ring is None else target_ring
         total = ring.zero
-        s, c = (ring.generator(kind, self.phase) for kind in ("sine", "cosine"))
         for k, (a, b) in harmonics.waves.items():
-            sine, cosine = ring.multiple_angle(s, c, k) if k else (ring.zero, ring.one)
-            total = total + ring.times(self.formula(a, target_ring).polynomial, cosine)
-            total = total + ring.times(self.formula(b, target_ring).polynomial, sine)
+            turns = zip(self.phases, multiples(k, len(self.phases)), strict=True)
+            sine, cosine = ring.sin_cos(LinearForm(tuple((phase, Fraction(n)) for phase, n in turns if n)))
+            for x, turned in ((a, cosine), (b, sine)):
+                total = total + ring.times(self.formula(x, target_ring, finely).polynomial, turned)
         return Formula(ring, total if target_ring is not None else ring.reduce(total))
 
     def shortest(self, harmonics: Harmonics) -> Formula:
         """The same with letters for common denominators, in the form that takes least to be written."""
-        whole = self.wave(harmonics)
-        if not self.denominators:
-            return whole
-        plain = self.wave(harmonics, self.told_ring)
-        reduced = Formula(plain.ring, plain.ring.reduce(plain.polynomial))
+        wholes = [self.wave(harmonics), self.wave(harmonics, finely=True)]
+        plain = [self.wave(harmonics, self.told_ring, finely) for finely in (False, True)] if self.denominators else []
+        reduced = [Formula(x.ring, x.ring.reduce(x.polynomial)) for x in plain[:1]]
         with letters_as(None):  # to write each in letters would take long
-            named = min((plain, reduced), key=lambda x: len(x.text()))
+            whole = min(wholes, key=lambda x: len(x.text()))
+            if not plain:
+                return whole
+            named = min((*plain, *reduced), key=lambda x: len(x.text()))
             raw, most = len(named.text()), len(whole.text())
         length = len(whole.text())
         if length < min(raw, most):
@@ -154,7 +187,7 @@ class Oscillating:
                 negative = coefficient.startswith("-") and _single(coefficient)
                 coefficient = coefficient[1:] if negative else coefficient
                 if k:
-                    factor = f"{wave}({self.phase})" if k == 1 else f"{wave}({k}*{self.phase})"
+                    factor = f"{wave}({told_angle(k, self.phases)})"
                     coefficient = (
                         "" if coefficient == "1" else coefficient if _single(coefficient) else f"({coefficient})"
                     )
@@ -164,6 +197,16 @@ class Oscillating:
                     coefficient if not text and not negative else f"-{coefficient}" if not text else sign + coefficient
                 )
         return text or "0"
+
+
+def told_angle(k: int, phases: Sequence[str]) -> str:
+    """``2*phase``, ``phase_x - phase_y``: the sum of multiples of phases with that wave number."""
+    text = ""
+    for phase, n in zip(phases, multiples(k, len(phases)), strict=True):
+        if n:
+            sign = ("" if n > 0 else "-") if not text else (" + " if n > 0 else " - ")
+            text += sign + (phase if abs(n) == 1 else f"{abs(n)}*{phase}")
+    return text
 
 
 def _single(text: str) -> bool:
@@ -194,13 +237,20 @@ def small_parameter(system: System) -> SmallParameter:
 
 
 def oscillating(
-    analysis: Analysis, order: int, values: Mapping[str, Fraction] | None = None, leading: str = "", which: int = 1
+    analysis: Analysis,
+    order: int,
+    values: Mapping[str, Fraction] | None = None,
+    leading: str | Sequence[str] = "",
+    which: int = 1,
 ) -> Oscillating:
-    """The periodic solution up to eps^order, checked.  ``values`` of parameters and of symbols of the result.
+    """The periodic solution up to eps^order, or that with several phases, checked.
+
+    ``values`` of parameters and of symbols of the result.
 
     A number of a parameter that is scaled stands before its power of eps, as the symbol would.
 
-    ``leading`` names the variable that leads, ``which`` says which frequency it has, where it shares several.
+    ``leading`` names the variable that leads, or one for each phase; ``which`` says which frequency the first has,
+    where it shares several.
 
     Raises NoClosedForm where there is none, or it cannot be had; ZeroDivisionError where numbers make it singular.
     """
@@ -231,10 +281,14 @@ def oscillating(
     most = order if taylor else order + LATEST
     left = {*symbolic, small.name, *related, *known_values}
     others = [name for name in system.parameter_names if name not in left]
-    tower = tower_over(symbolic, field.variables, order, others)
+    led = (leading,) if isinstance(leading, str) else tuple(leading)
+    led = tuple(name for name in led if name) or ((small.leading,) if small.leading else ())
+    if missing := next((name for name in led if name not in field.variables), ""):
+        raise NoClosedForm("the equations do not depend on [[name]]", name=missing)
+    tower = tower_over(symbolic, field.variables, order, others, max(1, len(led)))
     rows = graded_rows(tower, field, small.name, powers, most, scaled)
-    phase, symbols = names_of(system, field)
-    ring = _letters(system, [*symbolic, *others], phase, symbols)
+    phases, symbols = names_of(system, field, led)
+    ring = _letters(system, [*symbolic, *others], phases, symbols)
     constants = {
         internal: tower.number(known_values[shown]) for internal, shown in symbols.items() if shown in known_values
     }
@@ -250,26 +304,26 @@ def oscillating(
         constants,
         lambda x: _sign(analysis, tower, x),
     )
-    expansion = oscillation(there, order, leading or small.leading, which)
+    expansion = oscillation(there, order, led, which)
     if not expansion.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
-    used = {AMPLITUDE, *(f"#{name}" for name, _ in expansion.constants)}
-    sign = _sign(analysis, tower, expansion.frequency * expansion.frequency)
-    if sign == "negative":
+    used = {*map(amplitude_symbol, range(len(phases))), *(f"#{name}" for name, _ in expansion.constants)}
+    square_signs = [_sign(analysis, tower, phase.frequency * phase.frequency) for phase in expansion.phases]
+    if "negative" in square_signs:
         raise NoClosedForm(
             "[[leading]] does not oscillate where [[small]] = 0: the square of its frequency is < 0",
-            leading=expansion.leading,
+            leading=expansion.phases[square_signs.index("negative")].leading,
             small=small.name,
         )
     size = _sign(analysis, tower, expansion.amplitude * expansion.amplitude)
     return Oscillating(
         expansion,
         ring,
-        phase,
+        phases,
         {k: v for k, v in symbols.items() if k in used},
         field,
         taylor,
-        sign == "positive",
+        all(sign == "positive" for sign in square_signs),
         tuple(
             divisor
             for divisor in expansion.divisors
@@ -303,7 +357,8 @@ def with_integrals(solution: Oscillating, analysis: Analysis, rates: Mapping[str
         if power < 0:
             raise NoClosedForm("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=expansion.small)
         nothing = [Harmonics(expansion.tower, {})] * power
-        drifts.append(integrated(name, [*nothing, *slopes], expansion.frequency, expansion.corrections))
+        turning = zip(*((phase.frequency, phase.corrections) for phase in expansion.phases), strict=True)
+        drifts.append(integrated(name, [*nothing, *slopes], *turning))
     return replace(solution, oscillation=replace(expansion, drifts=tuple(drifts)))
 
 
@@ -372,7 +427,9 @@ def in_variables(solution: Oscillating, system: System, scaling: Scaling) -> Osc
         plain = without_velocity(name)
         factors[name] = factors.get(plain, tower.one) / slow
         new[name] = velocity_name(new.get(plain, plain))
-    leading = factors.get(expansion.leading, tower.one)
+    amplitudes = {
+        amplitude_symbol(k): factors.get(phase.leading, tower.one) for k, phase in enumerate(expansion.phases)
+    }
 
     def called(names: tuple[str, ...]) -> tuple[str, ...]:
         return tuple(new.get(name, name) for name in names)
@@ -381,8 +438,8 @@ def in_variables(solution: Oscillating, system: System, scaling: Scaling) -> Osc
         if index < MOST_ROOTS:
             return tower.square_root(whole(old.squares[MOST_ROOTS - 1 - index]))
         name = old.parameters[index - MOST_ROOTS]
-        if name == AMPLITUDE:
-            return tower.parameter(name) * leading
+        if name in amplitudes:
+            return tower.parameter(name) * amplitudes[name]
         return tower.parameter(name) if name.startswith("#") else images[name]
 
     known: dict[int, Element] = {}
@@ -415,11 +472,16 @@ def in_variables(solution: Oscillating, system: System, scaling: Scaling) -> Osc
         expansion,
         tower=tower,
         names=called(expansion.names),
-        leading=new.get(expansion.leading, expansion.leading),
-        block=called(expansion.block),
-        frequency=put(expansion.frequency) * slow,
-        corrections=tuple(map(put, expansion.corrections)),
-        amplitude=put(expansion.amplitude) / leading,
+        phases=tuple(
+            Phase(
+                new.get(phase.leading, phase.leading),
+                called(phase.block),
+                put(phase.frequency) * slow,
+                tuple(map(put, phase.corrections)),
+                put(phase.amplitude) / factor,
+            )
+            for phase, factor in zip(expansion.phases, amplitudes.values(), strict=True)
+        ),
         constants=tuple((name, put(x)) for name, x in expansion.constants),
         series=tuple(
             tuple(wave(name, harmonics) for harmonics in series)
@@ -445,8 +507,8 @@ def in_variables(solution: Oscillating, system: System, scaling: Scaling) -> Osc
     return replace(
         solution,
         oscillation=changed,
-        ring=_letters(base, symbolic, solution.phase, solution.symbols),
-        real=solution.real or tower.rational(changed.frequency) is not None,
+        ring=_letters(base, symbolic, solution.phases, solution.symbols),
+        real=solution.real or all(tower.rational(phase.frequency) is not None for phase in changed.phases),
         resonances=tuple(moved[id(resonance)] for resonance in solution.resonances),
         velocities=called(solution.velocities),
     )
@@ -460,10 +522,13 @@ def _sign(analysis: Analysis, tower: Tower, x: Element) -> str | None:
         return ("positive" if value.real > 0 else "negative") if proved else None
     places = (p.degrees()[MOST_ROOTS:] for p in (x.top, x.bottom))
     names = {name for degrees in places for name, d in zip(tower.parameters, degrees, strict=True) if d > 0}
-    if any(name.startswith("#") for name in names) or any(d > 0 for d in x.top.degrees()[:MOST_ROOTS]):
+    if any(name.startswith("#") for name in names):
         return None
     product = in_letters(tower, analysis.ring, {}, tower.made(x.top * x.bottom, tower.context.constant(1)))
-    return analysis.signs.sign(product)
+    rooted = any(
+        d > 0 for d in x.top.degrees()[:MOST_ROOTS]
+    )  # ``analysis.signs`` know no roots that are adjoined later
+    return (signs(analysis.parameters_scene) if rooted else analysis.signs).sign(product)
 
 
 def _is_number(tower: Tower, x: Element) -> bool:
@@ -494,7 +559,7 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
         _, cyclic, manifold = expanded_with(analysis)
         jets = expansion(*about, order + 2, cyclic, manifold)
         return taylor_field(jets, order + 1), True
-    field = vector_field(analysis.form, equations, (), images)[0]
+    field = vector_field(analysis.form, equations, (), images, rooted=True)[0]
     for name in names:
         if weights.get(name) and any(f"({name}" in variable for variable in field.variables):
             raise NoClosedForm(
@@ -506,20 +571,26 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     return field, False
 
 
-def names_of(system: System, field: PolynomialField) -> tuple[str, dict[str, str]]:
-    """What the phase is called, and the symbols of the tower by their own names."""
-    names = oscillation_names(field.variables, names_in(system))
-    return names.phase, {AMPLITUDE: names.amplitude} | {f"#{name}": start for name, start in names.starts.items()}
+def names_of(
+    system: System, field: PolynomialField, leading: Sequence[str] = ()
+) -> tuple[tuple[str, ...], dict[str, str]]:
+    """What the phases are called, and the symbols of the tower by their own names."""
+    names = oscillation_names(field.variables, names_in(system), leading)
+    amplitudes = {amplitude_symbol(k): name for k, name in enumerate(names.amplitudes)}
+    return names.phases, amplitudes | {f"#{name}": start for name, start in names.starts.items()}
 
 
-def _letters(system: System, symbolic: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:
+def _letters(system: System, symbolic: list[str], phases: Sequence[str], symbols: Mapping[str, str]) -> Ring:
     angles = {inside[1]: inside[2] for name in symbolic if (inside := angle_in(name)) is not None}
     names = [name for name in dict.fromkeys((*symbolic, *angles)) if angle_in(name) is None]
     positive = [
         parameter.name for parameter in system.parameters if parameter.name in names and parameter.sign == "positive"
     ]
-    positive.append(symbols[AMPLITUDE])
-    return Ring((), (phase,), [*names, *symbols.values()], {phase: 1} | angles, positive, spare=40)
+    positive += [shown for symbol, shown in symbols.items() if symbol.startswith(AMPLITUDE)]
+    ring = Ring((), phases, [*names, *symbols.values()], dict.fromkeys(phases, 1) | angles, positive, spare=40)
+    amplitudes = (shown for symbol, shown in symbols.items() if symbol.startswith(AMPLITUDE))
+    ring.leading = frozenset(ring.index("parameter", shown) for shown in amplitudes)  # what stands before each is told
+    return ring
 
 
 def in_letters(

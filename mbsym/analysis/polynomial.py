@@ -108,7 +108,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     listed = tuple(_without_aside(form, equations.aside, integral) for integral in listed) if declared else listed
     also = [integral.formula.polynomial for integral in listed]
     images = relations(analysis.parameters_scene)
-    whole, transfer = vector_field(form, equations, also, images, driven=driven)
+    whole, transfer = vector_field(form, equations, also, images, driven=driven, rooted=driven)
     angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
     vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
     exponentials = tuple(name for name in whole.variables if name.startswith("exp("))

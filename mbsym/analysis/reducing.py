@@ -25,7 +25,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.claims import Abbreviation, Claim
-from mbsym.model.reducing import INTEGRALS, Reducing
+from mbsym.model.scaling import INTEGRALS, Reducing
 from mbsym.model.system import System
 from mbsym.problems import changes
 from mbsym.problems.changes import Flow, How, Reduction

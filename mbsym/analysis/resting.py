@@ -56,14 +56,16 @@ def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibr
         return equilibrium
     enclosed = {f"{_PLACE}{x.name}": equilibrium.enclosures[x.name] for x in equilibrium.values if not x.exact}
     places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in equilibrium.values}
+    described = {entry.coordinate for entry in bare.motion}
+    follow = {name for name, velocity in zip(bare.coordinates, bare.velocities, strict=True) if velocity in places}
     motion = tuple(
-        MotionEntry(name, places.get(name, value), rate) for name, (value, rate) in motion_values(bare).items()
+        MotionEntry(name, places.get(name, value), rate)
+        for name, (value, rate) in motion_values(bare).items()
+        if name not in follow and (name in places or not bare.constraints or name in described)
     )
     analysis = Analysis(replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed))), ())
     try:
-        if equilibrium.verdict.because(
-            Because.NO_EQUATIONS
-        ):  # of velocities: the whole of problem 6 knows more than the list
+        if any(map(equilibrium.verdict.because, _KNOWN_BETTER)) and bare.constraints:
             stability = None if enclosed else analysis.stability
             return (
                 equilibrium
@@ -76,6 +78,9 @@ def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibr
     except (Failure, *NOT_THERE):
         return equilibrium
 
+
+#: Why the list leaves open what the whole of problem 6 may decide, where constraints tie velocities.
+_KNOWN_BETTER = (Because.NO_EQUATIONS, Because.MORE_ZERO_ROOTS, Because.NEAR_BORDER)
 
 #: How names of parameters begin that are coordinates of a place; parameters of the description are numbers by then.
 _PLACE = "place_dot_"

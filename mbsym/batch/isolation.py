@@ -156,19 +156,26 @@ def _ran(task: Task, budget: Budget, processes: Processes) -> Finished:
 
 def _ended(task: Task, budget: Budget, code: int | None, said: str) -> Finished:
     """Why a process ended without an answer."""
-    if code == OUT_OF_MEMORY or any(word in said.lower() for word in _MEMORY_WORDS):
-        bound = Message("the memory was not enough")
-        if budget.memory:
-            bound = Message("more than [[count]] MB were wanted", count=budget.memory // 2**20)
-        return _failed(task, Outcome.MEMORY, bound)
-    if code is None:
-        what = Message("its process is gone")
-    elif code < 0:
-        what = Message("its process was ended by [[signal]]", signal=_signal_name(-code))
-    else:
-        what = Message("its process ended with code [[code]]", code=code)
+    if any(word in said.lower() for word in _MEMORY_WORDS):
+        code = OUT_OF_MEMORY
+    what = how_it_ended(code, budget.memory)
+    if code == OUT_OF_MEMORY:
+        return _failed(task, Outcome.MEMORY, what)
     last = said.strip().rpartition("\n")[2][-_LAST_WORDS:]
     return _failed(task, Outcome.CRASHED, joined((what, last), ": ") if last else what)
+
+
+def how_it_ended(code: int | None, memory: int | None) -> Message:
+    """What the exit code of a worker says, None where nobody knows it."""
+    if code == OUT_OF_MEMORY:
+        if memory:
+            return Message("more than [[count]] MB were wanted", count=memory // 2**20)
+        return Message("the memory was not enough")
+    if code is None:
+        return Message("its process is gone")
+    if code < 0:
+        return Message("its process was ended by [[signal]]", signal=_signal_name(-code))
+    return Message("its process ended with code [[code]]", code=code)
 
 
 def _failed(task: Task, outcome: Outcome, message: str = "") -> Finished:

@@ -23,25 +23,13 @@ from contextlib import suppress
 from typing import IO
 
 from mbsym.batch.transport import BatchOptions, Task, task_text
-from mbsym.batch.worker import SINGLE, attend
+from mbsym.batch.worker import PENDULUM, SINGLE, attend
 
 #: A worker gets: its task, where the answer goes, where complaints go, its lifeline; its nurse, where to report.
 _HANDLES = 5
 
 #: Seconds after which nobody waits for the imports any more.
 _MOST_LOADING = 60.0
-
-_PENDULUM = b"""\
-mbsym: 1
-name: pendulum
-parameters: {m: positive, l: positive, g: positive}
-bodies:
-  - {name: bob, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [0, -l, 0], mass: m,
-     inertia about: mass centre, inertia: [0, 0, 0]}
-loads:
-  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
-motion: {x: 0}
-"""
 
 
 def available() -> bool:
@@ -154,7 +142,7 @@ def main() -> None:
     with suppress(Exception):  # whoever comes will see it again
         from mbsym.batch.work import work
 
-        work(Task("pendulum.yaml", "", _PENDULUM, BatchOptions(tuple(sys.argv[2:]))))
+        work(Task("pendulum.yaml", "", PENDULUM.encode(), BatchOptions(tuple(sys.argv[2:]))))
     line.send(b"!")
     gc.collect()
     gc.freeze()  # what is there stays: nobody looks at it again, so that it stays shared

@@ -19,6 +19,19 @@ OUT_OF_MEMORY = 75
 #: One thread of arithmetic a process: there are as many processes as the machine has work for.
 SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
+#: What a process derives once to have everything at hand.
+PENDULUM = """\
+mbsym: 1
+name: pendulum
+parameters: {m: positive, l: positive, g: positive}
+bodies:
+  - {name: bob, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [0, -l, 0], mass: m,
+     inertia about: mass centre, inertia: [0, 0, 0]}
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+motion: {x: 0}
+"""
+
 
 def main() -> None:
     memory, lifeline = map(int, sys.argv[1:])
@@ -31,8 +44,8 @@ def attend(memory: int, lifeline: int, answer: int) -> NoReturn:
     """Reads a task from handle 0, writes what became of it to ``answer``, and ends the process."""
     code = 1
     try:
-        _hang_on(lifeline)
-        _bounded(memory)
+        hang_on(lifeline)
+        bounded(memory)
         from mbsym.batch.transport import finished_text, read_task
         from mbsym.batch.work import work
 
@@ -48,7 +61,7 @@ def attend(memory: int, lifeline: int, answer: int) -> NoReturn:
     os._exit(code)
 
 
-def _bounded(memory: int) -> None:
+def bounded(memory: int) -> None:
     """No more than so many bytes, where the system has such a bound; and no core dumps."""
     try:
         import resource
@@ -62,7 +75,7 @@ def _bounded(memory: int) -> None:
             resource.setrlimit(resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS, (memory,) * 2)
 
 
-def _hang_on(lifeline: int) -> None:
+def hang_on(lifeline: int) -> None:
     """A signal that ends this process comes from the system itself when the other end is closed.
 
     A thread that waits would have to wait for the algebra, too, which does not let others run while it multiplies.
@@ -76,7 +89,7 @@ def _hang_on(lifeline: int) -> None:
         fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(lifeline, fcntl.F_SETFL, fcntl.fcntl(lifeline, fcntl.F_GETFL) | os.O_ASYNC)
         gone, _, _ = select.select([lifeline], [], [], 0)
-    except (ImportError, AttributeError, OSError):
+    except (ImportError, AttributeError, OSError, ValueError):
         return
     if gone:  # it was closed before anybody listened
         os._exit(1)

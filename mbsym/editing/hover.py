@@ -65,16 +65,10 @@ def _name(word: str, analysis: Analysis) -> str | None:
         if energy is not None and name in energy.cyclic:
             parts.append("cyclic: T and U do not hold it")
         return "; ".join(parts)
-    for motion in system.prescribed:
-        if motion.name == word:
-            return f"**{plain(word)}**{unit_text}: prescribed, {plain(word)}' = {code(written(motion.rate))}"
-    for signal in system.inputs:
-        if signal.name == word:
-            return f"**{plain(word)}**{unit_text}: an input" + (f", {plain(signal.meaning)}" if signal.meaning else "")
-    for symbol in system.notation:
-        if symbol.name == word:
-            return f"**{plain(word)}** = {code(written(symbol.value))}"
-    return None
+    others = {x.name: f"{unit_text}: prescribed, {plain(x.name)}' = {code(written(x.rate))}" for x in system.prescribed}
+    others |= {x.name: f"{unit_text}: an input" + (f", {plain(x.meaning)}" if x.meaning else "") for x in system.inputs}
+    others |= {x.name: f" = {code(written(x.value))}" for x in system.notation}
+    return f"**{plain(word)}**{others[word]}" if word in others else None
 
 
 def _body(word: str, analysis: Analysis) -> str | None:

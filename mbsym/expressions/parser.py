@@ -587,7 +587,8 @@ class _Parser:
         previous = self.tokens[self.position - 1] if self.position else token
         hint: str | None = None
         if token.kind in ("name", "number") or token.text == "(":
-            hint = Message("write [[what]]*[[what2]] for a product", what=previous.text, what2=token.text)
+            factor = f"{token.text}(...)" if token.text in FUNCTIONS else token.text
+            hint = Message("write [[what]]*[[what2]] for a product", what=previous.text, what2=factor)
         if previous.kind == "number" and token.kind == "name":
             hint = _unit_hint(previous.text, token.text, self.named) or hint
         if _CONNECTIVES & {previous.text, token.text}:

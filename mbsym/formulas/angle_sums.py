@@ -17,6 +17,8 @@ from itertools import combinations
 from math import comb, gcd
 from typing import NamedTuple
 
+from mbsym.algebra.matrices import united
+
 #: A packed product of sines and cosines.
 Code = int
 #: Multiples of the angles; the first that is not zero is positive.
@@ -128,7 +130,7 @@ def _lowest(parts: Iterable[Part], below: int) -> Joined:
 def _candidates(products: Mapping[Code, int], squares: bool) -> Iterator[tuple[int, ...]]:
     """Sets of angles to join, the largest first."""
     links = _linked(products)
-    for whole in _components(links):
+    for whole in sorted(tuple(sorted(angles)) for angles in united(links)):
         if len(whole) > MOST_ANGLES:
             yield from (pair for pair in links if set(pair) <= set(whole))
             continue
@@ -181,14 +183,6 @@ def _squared(products: Mapping[Code, int]) -> list[int]:
             rest >>= _BITS
             angle += 1
     return sorted(angles)
-
-
-def _components(links: Iterable[tuple[int, int]]) -> list[tuple[int, ...]]:
-    sets: list[set[int]] = []
-    for pair in links:
-        touching = [group for group in sets if group & set(pair)]
-        sets = [group for group in sets if group not in touching] + [set(pair).union(*touching)]
-    return sorted(tuple(sorted(group)) for group in sets)
 
 
 # --- Fourier ----------------------------------------------------------------------------------------------------------

@@ -133,7 +133,7 @@ class Formula(GuessesNames):
 
     def to_sympy(self) -> Any:
         """A SymPy expression in plain symbols: ``theta``, ``theta_dot``, ``Jx``."""
-        from mbsym.formulas.exchange import to_sympy
+        from mbsym.formulas.arithmetic import to_sympy
 
         return to_sympy(self.ring, self.polynomial)
 

@@ -44,7 +44,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.message import Message, worded
+from mbsym.expressions.message import worded
 from mbsym.maps.section import Section
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.linear_form import LinearSystem, is_potential, is_zero
@@ -265,7 +265,7 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
         value = constant.reduced(polynomial)
         if value == 0:
             text = "this vanishes identically, with irrational numbers: [[what]]"
-            raise TooLargeError(Message(text, what=worded(origin.value)))
+            raise TooLargeError(text, what=worded(origin.value))
         return Condition(origin, value, part, "", reduced)
 
     raw = characteristic_polynomial(system.M, added(system.D, system.G), added(system.K, system.N))

@@ -23,7 +23,6 @@ import numpy as np
 from flint import arb, fmpq
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Constrained, Failure
 from mbsym.algebra.plane.line import Interval, Line, divided
 from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compare, enclosure
@@ -461,15 +460,5 @@ def _newton(curve: Curve, numbers: Floats, guess: Array, p: float) -> Array | No
 
 def uses_only_known(ring: Ring, polynomials: Sequence[Polynomial]) -> bool:
     """Whether all generators are of a kind that ``Floats`` evaluates."""
-    pending, seen = [*occurring(polynomials)], set()
-    while pending:
-        k = pending.pop()
-        if k in seen:
-            continue
-        seen.add(k)
-        g = ring.generators[k]
-        if g.kind not in ("sine", "cosine", "root", "reciprocal", "coordinate", "parameter"):
-            return False
-        if g.argument is not None:
-            pending += occurring([g.argument])
-    return True
+    known = ("sine", "cosine", "root", "reciprocal", "coordinate", "parameter")
+    return all(ring.generators[k].kind in known for k in ring.held(polynomials))

@@ -26,7 +26,6 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
 from mbsym.algebra.ring import Polynomial
-from mbsym.expressions.message import Message
 from mbsym.mechanics.charts import charts
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
@@ -240,20 +239,9 @@ class Curve(Varied):
         """The derivative by the parameter.  Raises NoClosedForm where p stands in a root or a function."""
         for k in occurring([x]):
             g = self.ring.generators[k]
-            if g.argument is not None and self.index in self._reached(g.argument):
-                raise NoClosedForm(Message("[[name]] stands in a root or a function", name=self.parameter))
+            if g.argument is not None and self.index in self.ring.held([g.argument]):
+                raise NoClosedForm("[[name]] stands in a root or a function", name=self.parameter)
         return x.derivative(self.index)
-
-    def _reached(self, x: Polynomial) -> set[int]:
-        reached: set[int] = set()
-        pending = [*occurring([x])]
-        while pending:
-            k = pending.pop()
-            if k not in reached:
-                reached.add(k)
-                argument = self.ring.generators[k].argument
-                pending += [] if argument is None else [*occurring([argument])]
-        return reached
 
     # --- places on the curve ---
 

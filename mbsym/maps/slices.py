@@ -144,12 +144,10 @@ def stack(
     line = critical_levels(boundaries.factors, box_of(axes), *ends(axes[2]), progress=watch)
     if len(line.zeros) > MOST_LEVELS:
         raise TooLargeError(
-            Message(
-                "values of [[name]] at which the picture may change: [[count]], more than [[most]]",
-                name=axes[2].name,
-                count=len(line.zeros),
-                most=MOST_LEVELS,
-            ),
+            "values of [[name]] at which the picture may change: [[count]], more than [[most]]",
+            name=axes[2].name,
+            count=len(line.zeros),
+            most=MOST_LEVELS,
             limit=Limit.WORK,
             remedy=Message("take a smaller interval of [[name]]", name=axes[2].name),
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from mbsym.model.system import System
@@ -13,19 +13,25 @@ PHASE, AMPLITUDE = "phase", "amplitude"
 
 @dataclass(frozen=True)
 class OscillationNames:
-    """``starts``: x_0 by the name of x, its value at the phase 0 where x is constant without the small parameter."""
+    """``phases``, ``amplitudes``: of the only one, or of each that a variable leads.
 
-    phase: str
-    amplitude: str
+    ``starts``: x_0 by the name of x, its value at the phase 0 where x is constant without the small parameter.
+    """
+
+    phases: tuple[str, ...]
+    amplitudes: tuple[str, ...]
     starts: Mapping[str, str]
 
     @property
     def all(self) -> tuple[str, ...]:
-        return (self.phase, self.amplitude, *self.starts.values())
+        return (*self.phases, *self.amplitudes, *self.starts.values())
 
 
-def oscillation_names(variables: Iterable[str], taken: Iterable[str]) -> OscillationNames:
-    """Names for the symbols of a solution in ``variables``; one that is ``taken`` gets an underscore more."""
+def oscillation_names(variables: Iterable[str], taken: Iterable[str], leading: Sequence[str] = ()) -> OscillationNames:
+    """Names for the symbols of a solution in ``variables``; one that is ``taken`` gets an underscore more.
+
+    Of several variables that are ``leading``: ``phase_x``, ``amplitude_x``.
+    """
     variables = tuple(variables)
     known = {*taken, *variables}
 
@@ -35,9 +41,10 @@ def oscillation_names(variables: Iterable[str], taken: Iterable[str]) -> Oscilla
         known.add(name)
         return name
 
-    phase, amplitude = free(PHASE), free(AMPLITUDE)
     plain = {name: "".join(x if x.isalnum() else "_" for x in name).strip("_") for name in variables}
-    return OscillationNames(phase, amplitude, {name: free(f"{word}_0") for name, word in plain.items()})
+    endings = [f"_{plain[name]}" for name in leading] if len(leading) > 1 else [""]
+    phases, amplitudes = (tuple(free(f"{word}{ending}") for ending in endings) for word in (PHASE, AMPLITUDE))
+    return OscillationNames(phases, amplitudes, {name: free(f"{word}_0") for name, word in plain.items()})
 
 
 def oscillating_variables(system: System) -> tuple[str, ...]:

@@ -74,3 +74,30 @@ def factor_of(value: Expression, name: str) -> Expression | None:
             inner = factor_of(left, name)
             return None if inner is None else divide(inner, right)
     return None
+
+
+# A reduction as its author asks for it: steps, and from which power of a parameter on terms are left out.
+
+
+INTEGRALS = "integrals"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A step: ``names`` of variables, ``definitions`` what some of them are, ``by`` what they are eliminated: names.
+
+    Without ``by`` it is a change of variables, and what is no variable is a letter that stands in it.
+    """
+
+    names: tuple[str, ...]
+    definitions: Mapping[str, Expression]
+    by: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Reducing:
+    """``small`` and ``known``: the remainder O(small**known); "" where all is exact."""
+
+    steps: tuple[Asked, ...]
+    small: str = ""
+    known: int | None = None

@@ -27,8 +27,7 @@ from mbsym.mechanics.programs import ForwardDynamics, Programs, forward_dynamics
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
 from mbsym.numerics.events.features import SLIDING, Features, Polynomial, Standing, features, held, sign_that_holds
-from mbsym.numerics.kernels.cells import Cells
-from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.interface import Cells, Code
 from mbsym.numerics.scenario import Scenario, Specialised, bound, substituted
 
 if TYPE_CHECKING:

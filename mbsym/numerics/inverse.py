@@ -26,7 +26,6 @@ from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, add, differentiate, multiply
 from mbsym.mechanics.constraints.dynamics import conditions
 from mbsym.mechanics.kinematics import Scene
@@ -186,7 +185,7 @@ def check_linear(program: Program, system: System, slopes: tuple[tuple[Node, ...
     bent = [name for name in system.input_names if name in held]
     if bent:
         text = "inputs are found where they enter linearly; these do not: [[names]]"
-        raise NotLinear(Message(text, names=", ".join(bent)))
+        raise NotLinear(text, names=", ".join(bent))
 
 
 def _solved(columns: Array, right: Array) -> tuple[Array, npt.NDArray[np.int64]]:

@@ -467,7 +467,7 @@ class Specialised(Program):
             argument = balls.number(value)
             result = balls.square_root(argument) if name == "sqrt" else balls.function(name, argument)
             if not result.is_finite():
-                raise SingularPoint(Message("[[functions]] of [[what]]", functions=name, what=f"{float(value):g}"))
+                raise SingularPoint("[[functions]] of [[what]]", functions=name, what=f"{float(value):g}")
             return self.number(rounded(result))
 
 

@@ -7,13 +7,15 @@ numbers are in it: what does not occur there has no influence.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.matrices import united
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
@@ -49,40 +51,30 @@ def separated(dynamics: Dynamics) -> tuple[Part, ...]:
     # Constraints may link what the accelerations at some values do not.
     if dynamics.constraints is not None or dynamics.in_states:
         return (Part(names, tuple(range(2 * n)), dynamics),)
-    linked = _linked(dynamics)
-    if len(set(linked)) > 1:
+    linked = list(_linked(dynamics))
+    if len(united(linked)) > 1:
         masses = dynamics.mass_matrix
-        for i in range(n):
-            for j in range(n):
-                if linked[i] != linked[j] and not masses.program.vanishes(masses.outputs[i * n + j]):
-                    linked = _merged(linked, i, j)
+        pairs = ((i, j) for i, j in product(range(n), range(n)) if i != j)
+        linked += [{i, j} for i, j in pairs if not masses.program.vanishes(masses.outputs[i * n + j])]
+    groups = sorted(map(sorted, united(linked)))
+    if len(groups) == 1:
+        return (Part(names, tuple(range(2 * n)), dynamics),)
     parts = []
-    for first in sorted(set(linked)):
-        own = [i for i in range(n) if linked[i] == first]
-        if len(own) == n:
-            return (Part(names, tuple(range(2 * n)), dynamics),)
+    for own in groups:
         scenario = _alone(dynamics.scenario, {names[i] for i in own})
         places = (*own, *(n + i for i in own))
         parts.append(Part(tuple(names[i] for i in own), places, Dynamics(scenario)))
     return tuple(parts)
 
 
-def _linked(dynamics: Dynamics) -> list[int]:
-    """For each coordinate the least place among those it hangs together with through q''."""
+def _linked(dynamics: Dynamics) -> Iterator[set[int]]:
+    """Each coordinate with those that q'' of it depends on."""
     n, code = dynamics.size, dynamics.right_hand_side
     owner = {name: place % n for place, name in enumerate(code.inputs[1:])}
-    linked = list(range(n))
     for i in range(n):
-        for instruction in code.program.live(code.outputs[n + i : n + i + 1]):
-            operation = code.program.instructions[instruction]
-            if operation.operation == "input" and str(operation.payload) in owner:
-                linked = _merged(linked, i, owner[str(operation.payload)])
-    return linked
-
-
-def _merged(linked: Sequence[int], i: int, j: int) -> list[int]:
-    low, high = sorted((linked[i], linked[j]))
-    return [low if place == high else place for place in linked]
+        live = map(code.program.instructions.__getitem__, code.program.live(code.outputs[n + i : n + i + 1]))
+        read = (str(instruction.payload) for instruction in live if instruction.operation == "input")
+        yield {i, *(owner[name] for name in read if name in owner)}
 
 
 def _alone(scenario: Scenario, names: set[str]) -> Scenario:

@@ -374,7 +374,11 @@ class _Made:
     def _closure(self) -> Closure:
         slopes = tuple(tuple(self._value[x.number] for x in row) for row in self.slopes)
         rows = tuple(self._value[x.number] for x in self.rows)
-        return Closure(self.system.coordinates, rows, slopes, tuple(self.labels))
+        points = [self.at(x) for name in self.places.carried for x in (self.places.origins[name], self.centres[name])]
+        values = self.program.at(samples(self.known, self.scenario)[0])
+        far = max((hypot(*at(values, x)) for x in points), default=0.0) or 1.0
+        sizes = tuple(far if x.kind is Measure.LENGTH else 1.0 for x in self.known)
+        return Closure(self.system.coordinates, sizes, rows, slopes, tuple(self.labels))
 
     def picture(self, found: Start) -> Picture:
         """All of it as values."""
@@ -508,7 +512,7 @@ def measure(system: System, name: str) -> Measure:
 #: Newton's steps at most.
 STEPS = 60
 
-#: No coordinate moves further in one of them, in radians or as a part of 1 + its size.
+#: No coordinate moves further in one of them, as a part of its size and where it is.
 LONGEST = 0.5
 
 #: Singular values below this part of the largest count as zero.
@@ -535,7 +539,7 @@ def rows(scene: Scene[Node]) -> tuple[list[Node], list[list[Node]], list[str]]:
 def gaps(program: PoseProgram, closure: Closure, state: Mapping[str, float]) -> list[float]:
     """|f| of every row as a part of what the coordinates do to it: closed where it is below the tolerance."""
     values = program.at(state)
-    sizes = [1 + abs(float(state[name])) for name in closure.coordinates]
+    sizes = [size + abs(float(state[name])) for name, size in zip(closure.coordinates, closure.sizes, strict=True)]
     residuals = []
     for row, slopes in zip(closure.rows, closure.slopes, strict=True):
         scale = sum(abs(float(values[k])) * size for k, size in zip(slopes, sizes, strict=True))
@@ -560,7 +564,7 @@ def closed(
         if not (np.all(np.isfinite(f)) and np.all(np.isfinite(slopes))) or not free:
             break
         step = np.linalg.lstsq(slopes, -f, rcond=RANK)[0]
-        sizes = np.array([1 + abs(there[closure.coordinates[k]]) for k in free])
+        sizes = np.array([closure.sizes[k] + abs(there[closure.coordinates[k]]) for k in free])
         step *= min(1.0, LONGEST / max(float(np.max(np.abs(step) / sizes)), 1e-300))
         for k, change in zip(free, step, strict=True):
             there[closure.coordinates[k]] += float(change)

@@ -5,7 +5,10 @@ Numbers that are not finite become null; floats are written whole, so that the p
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from enum import Enum
 from math import isfinite
 from typing import Any
 
@@ -15,64 +18,36 @@ from mbsym.expressions.table import Curve
 from mbsym.formulas.mathml import spelled_name
 from mbsym.model.system import INERTIAL
 from mbsym.picture.program import PoseProgram
-from mbsym.picture.values import Closure, Drawn, Picture
+from mbsym.picture.values import Picture
 
 
 def as_json(picture: Picture) -> dict[str, Any]:
     """The picture with the sentences that have to stand beside it."""
     stand_ins = dict(picture.notes.stand_ins)
-    return {
-        "name": picture.name,
-        "frame": picture.frame,
+    told = {x.name: _encoded(getattr(picture, x.name)) for x in fields(picture) if x.name not in ("notes", "program")}
+    for shown in (*told["coordinates"], *told["parameters"]):
+        shown["label"] = spelled_name(shown["name"])
+    for parameter in told["parameters"]:
+        parameter["given"] = parameter["name"] not in stand_ins
+    for shown, guide in zip(told["guides"], picture.guides, strict=True):
+        shown["closed"] = guide.closed
+    return told | {
         "units": dict(picture.units),
-        "coordinates": [
-            {
-                "name": x.name,
-                "label": spelled_name(x.name),
-                "kind": x.kind.value,
-                "unit": x.unit,
-                "value": number(x.value),
-                "velocity": number(x.velocity),
-                "minimum": number(x.minimum),
-                "maximum": number(x.maximum),
-                "limited": x.limited,
-            }
-            for x in picture.coordinates
-        ],
-        "parameters": [
-            {
-                "name": x.name,
-                "label": spelled_name(x.name),
-                "value": number(x.value),
-                "unit": x.unit,
-                "meaning": x.meaning,
-                "given": x.name not in stand_ins,
-            }
-            for x in picture.parameters
-        ],
-        "guides": [
-            {"body": x.body, "points": [numbers(point) for point in x.points], "closed": x.closed}
-            for x in picture.guides
-        ],
         "program": _program(picture.program),
-        "bodies": [_body(x) for x in picture.bodies],
-        "arrows": [
-            {"load": x.load, "of": x.of.value, "body": x.body, "point": x.point, "along": x.along}
-            for x in picture.arrows
-        ],
-        "lines": [{"kind": x.kind.value, "start": x.start, "end": x.end, "of": x.of} for x in picture.lines],
-        "closure": None if picture.closure is None else _closure(picture.closure),
-        "view": {
-            "up": numbers(picture.view.up),
-            "azimuth": picture.view.azimuth,
-            "elevation": picture.view.elevation,
-            "plane": picture.view.plane,
-        },
-        "middle": numbers(picture.middle),
-        "extent": number(picture.extent),
         "atZero": list(picture.notes.at_zero),
         "sentences": list(sentences(picture)),
     }
+
+
+def _encoded(value: Any) -> Any:
+    """A value of a picture by the names of its fields, halfAxes for half_axes."""
+    if isinstance(value, float):
+        return number(value)
+    if isinstance(value, tuple):
+        return [_encoded(x) for x in value]
+    if is_dataclass(value):
+        return {re.sub("_(.)", lambda m: m[1].upper(), x.name): _encoded(getattr(value, x.name)) for x in fields(value)}
+    return value.value if isinstance(value, Enum) else value
 
 
 def number(value: float) -> float | None:
@@ -80,15 +55,10 @@ def number(value: float) -> float | None:
     return float(value) if isfinite(value) else None
 
 
-def numbers(values: Iterable[float]) -> list[float | None]:
-    """The same for many."""
-    return [number(x) for x in values]
-
-
 def _program(program: PoseProgram) -> dict[str, Any]:
     return {
         "inputs": list(program.inputs),
-        "constants": numbers(program.constants),
+        "constants": [number(x) for x in program.constants],
         "steps": [list(step) for step in program.steps],
         "tables": [_table(curve) for curve in program.tables],
     }
@@ -100,49 +70,6 @@ def _table(curve: Curve) -> dict[str, Any]:
         "knots": [float(x) for x in curve.knots],
         "bases": [float(x) for x in curve.bases],
         "pieces": [[float(x) for x in piece] for piece in curve.polynomials],
-    }
-
-
-def _body(body: Drawn) -> dict[str, Any]:
-    joint = body.joint
-    return {
-        "name": body.name,
-        "parent": body.parent,
-        "axes": body.axes,
-        "origin": body.origin,
-        "centre": body.centre,
-        "massive": body.massive,
-        "cart": body.cart,
-        "joint": {
-            "hinges": [
-                {"along": x.along, "coordinates": list(x.coordinates), "slides": x.slides, "straight": x.straight}
-                for x in joint.hinges
-            ],
-            "sprung": list(joint.sprung),
-            "damped": list(joint.damped),
-        },
-        "shapes": [
-            {"kind": x.kind, "size": numbers(x.size), "at": numbers(x.at), "axes": [numbers(row) for row in x.axes]}
-            for x in body.shapes
-        ],
-        "ellipsoid": None
-        if body.ellipsoid is None
-        else {
-            "halfAxes": numbers(body.ellipsoid.half_axes),
-            "axes": [numbers(row) for row in body.ellipsoid.axes],
-            "trueSize": body.ellipsoid.true_size,
-            "telling": body.ellipsoid.telling,
-        },
-    }
-
-
-def _closure(closure: Closure) -> dict[str, Any]:
-    return {
-        "coordinates": list(closure.coordinates),
-        "rows": list(closure.rows),
-        "slopes": [list(row) for row in closure.slopes],
-        "names": list(closure.names),
-        "tolerance": closure.tolerance,
     }
 
 

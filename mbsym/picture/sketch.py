@@ -256,7 +256,7 @@ class _Paper:
         far = max((dist(a, b) for a in flat for b in flat), default=0.0)
         reach = [hypot(*shape.size) for body in self.picture.bodies for shape in body.shapes]
         far = max([far, *reach])
-        return far if far > 1e-9 or not isfinite(far) else 1.0
+        return far if far > 1e-9 * self.picture.extent or not isfinite(far) else 1.0
 
     @staticmethod
     def _rounded(value: float) -> float:
@@ -549,10 +549,18 @@ class _Paper:
         for constraint in self.system.constraints:
             if isinstance(constraint, Coincide | Distance):
                 for point in (constraint.first, constraint.second):
-                    if point.body == body.name and all(names(x) <= self.picture.values.keys() for x in point.position):
-                        values = self.picture.values
-                        arm = [_number(x, values) for x in point.position]
+                    arm = self._numbers(point.position) if point.body == body.name else None
+                    if arm is not None:
                         yield point.position, self.on(combined((1.0, *arm), (self.point(body.origin), *axes)))
+
+    def _numbers(self, position: Vector) -> Numbers | None:
+        """A point of a body, where only parameters say which."""
+        values = self.picture.values
+        if not all(names(x) <= values.keys() for x in position):
+            return None
+        exactly = {name: Fraction(x) for name, x in values.items()}
+        a, b, c = (float(exact(x, exactly)) for x in position)
+        return a, b, c
 
     def _goes_on(self, body: Drawn) -> bool:
         """Whether its mass centre lies on a longer line of it."""
@@ -594,12 +602,9 @@ class _Paper:
             *(x for x in self.system.loads if isinstance(x, PointSpring | PointDamper | IsotropicDamper)),
         ]:
             for end in (tie.first, tie.second):
-                if end.body == INERTIAL == self.picture.frame and all(
-                    names(x) <= self.picture.values.keys() for x in end.position
-                ):
-                    values = self.picture.values
-                    x, y, z = (_number(c, values) for c in end.position)
-                    yield self.on((x, y, z))
+                place = self._numbers(end.position) if end.body == INERTIAL == self.picture.frame else None
+                if place is not None:
+                    yield self.on(place)
 
     @cached_property
     def _carts(self) -> set[str]:
@@ -978,10 +983,6 @@ def _length_of(vector: Sequence[Expression]) -> Expression | None:
     if isinstance(expression, Number) or len(_letters_of(expression)) > SHORT:
         return None
     return expression
-
-
-def _number(value: Expression, values: Mapping[str, float]) -> float:
-    return float(exact(value, {name: Fraction(x) for name, x in values.items()}))
 
 
 def _direction(first: Place, second: Place) -> Place:

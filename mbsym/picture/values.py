@@ -184,11 +184,13 @@ class Line:
 class Closure:
     """Constraints between positions: ``rows`` vanish where they hold; ``slopes`` are their derivatives, row by row.
 
-    Columns belong to ``coordinates``; ``names`` says which constraint a row is.  A row counts as closed where it is
-    below ``tolerance`` times the sum of |slope| (1 + |coordinate|).
+    Columns belong to ``coordinates``, of ``sizes`` (how far the scene reaches, for a length; 1 for others); ``names``
+    says which constraint a row is.  It counts as closed where it is below ``tolerance`` times the sum of |slope|
+    (size + |coordinate|).
     """
 
     coordinates: tuple[str, ...]
+    sizes: tuple[float, ...]
     rows: tuple[int, ...]
     slopes: tuple[tuple[int, ...], ...]
     names: tuple[str, ...]

@@ -12,7 +12,8 @@ L nor Q contains psi and Q_psi = 0.
 * ``CONSERVED``: P = 0 identically, or the forces have a potential that nobody named (a dead load: a force that keeps
   its direction in space): Q depends on q alone, with dQ_i/dq_j = dQ_j/dq_i, and joins the energy.
 * ``NOT_GROWING``: P <= 0 near the motion, proved: a sum of squares and even powers with coefficients of known sign, or
-  a quadratic part of P that is negative definite in all the velocities that occur in P.
+  a quadratic part of P that is negative definite in all the velocities that occur in P; P less that of Q(q, 0) where
+  this has a potential, which joins the energy, too.
 * ``GROWS``: P >= 0 near the motion and not zero, proved by the same sums.
 * ``UNKNOWN``: anything else.
 
@@ -45,7 +46,6 @@ from mbsym.expressions.tree import (
     Name,
     Negative,
     Operation,
-    multiply,
     names,
 )
 from mbsym.mechanics.frames import forward
@@ -340,19 +340,25 @@ class Balance:
         return tuple(load for load in gradients if len(gradients) > 1 and self._is_gradient([load]))
 
     def _is_gradient(self, loads: Sequence[Load]) -> bool:
-        ring, system = self.scene.ring, self.scene.system
         try:
-            forces = {name: self._put(x) for name, x in generalized_forces(self.scene, loads).items()}
-            if any(ring.dependencies(x, (*system.velocities, *self._running)) for x in forces.values()):
-                return False
-            if not self._along_motion(forces).is_zero():
-                return False
-            return all(
-                ring.is_zero(ring.derivative(forces[a], b) - ring.derivative(forces[b], a)) is True
-                for a, b in combinations(system.coordinates, 2)
+            return self._has_potential(
+                {name: self._put(x) for name, x in generalized_forces(self.scene, loads).items()}
             )
         except Failure:
             return False
+
+    def _has_potential(self, forces: Mapping[str, Polynomial]) -> bool:
+        """Whether forces are the gradient of a function of the coordinates that what turns does not know.
+
+        Raises Failure.
+        """
+        ring, system = self.scene.ring, self.scene.system
+        if any(ring.dependencies(x, (*system.velocities, *self._running)) for x in forces.values()):
+            return False
+        return self._along_motion(forces).is_zero() and all(
+            ring.is_zero(ring.derivative(forces[a], b) - ring.derivative(forces[b], a)) is True
+            for a, b in combinations(system.coordinates, 2)
+        )
 
     @cached_property
     def _running(self) -> tuple[str, ...]:
@@ -490,26 +496,43 @@ class Balance:
             len(given_loads) < len(loads) and given_loads and self._loss(given_loads).is_zero()
         ):  # gyroscopic ones: the others decide
             loads = [load for load in loads if not load.given]
-        words = [word for load in loads for word in self._losses(load)]
+        static = self._static(loads)
+        words = [word for load in loads for word in self._losses(load, bool(static))]
         if {*words} <= {"zero"}:
             return EnergyLaw.CONSERVED
         if {*words} <= {"zero", "positive", "nonnegative"}:
             return EnergyLaw.NOT_GROWING
         if {*words} <= {"zero", "negative", "nonpositive"}:
             return EnergyLaw.GROWS
-        return _Loss(self, self.scene.ring, tuple(system.coordinates), self._put(self._loss(loads))).law
+        loss = self._loss(loads) + self._power(static)
+        return _Loss(self, self.scene.ring, tuple(system.coordinates), self._put(self.scene.ring.reduce(loss))).law
+
+    def _static(self, loads: Sequence[Load]) -> dict[str, Polynomial]:
+        """Q(q, 0) of some loads together where it has a potential, which joins the energy; else nothing."""
+        ring = self.scene.ring
+        still = {ring.index("velocity", name): ring.zero for name in self.scene.system.coordinates}
+        forces: dict[str, Polynomial] = {}
+        try:
+            for load in loads:
+                for name, force in KINDS[type(load)].action(load, self.scene).generalized.items():
+                    forces[name] = forces.get(name, ring.zero) + self._put(ring.substitute(force, still))
+            every = {name: ring.reduce(forces.get(name, ring.zero)) for name in self.scene.system.coordinates}
+            return every if self._has_potential(every) else {}
+        except Failure:
+            return {}
+
+    def _power(self, forces: Mapping[str, Polynomial]) -> Polynomial:
+        ring = self.scene.ring
+        return ring.dot(list(forces.values()), [ring.generator("velocity", name) for name in forces])
 
     def _loss(self, loads: Sequence[Load]) -> Polynomial:
         """-P of some loads together."""
         ring = self.scene.ring
-        loss = ring.zero
-        for load in loads:
-            for name, force in KINDS[type(load)].action(load, self.scene).generalized.items():
-                loss = loss - ring.times(force, ring.generator("velocity", name))
-        return ring.reduce(loss)
+        powers = (self._power(KINDS[type(load)].action(load, self.scene).generalized) for load in loads)
+        return ring.reduce(-sum(powers, ring.zero))
 
-    def _losses(self, load: Load) -> Iterator[str]:
-        """The signs of parts of -P, product by product."""
+    def _losses(self, load: Load, moving: bool) -> Iterator[str]:
+        """The signs of parts of -P, product by product; ``moving``: without those of forces that know no velocity."""
         if load.damping is not None:
             yield self._word(self.scene.lower(load.damping))
         if load.dissipation_function is not None:
@@ -517,8 +540,11 @@ class Balance:
                 degree = self._degree(product)
                 yield "unknown" if degree is None else "zero" if degree == 0 else self._product_word(product)
         for name, force in zip(load.coordinates, load.given, strict=False):
-            for product in _products(multiply(Name(velocity_name(name)), force)):
-                yield sign_of_product("negative", self._product_word(product))
+            for product in _products(force):
+                if moving and not any({*self.scene.system.velocities} & names(base) for base, _ in product.powers):
+                    continue
+                power = _Product(Fraction(1), ((Name(velocity_name(name)), 1),)) * product
+                yield sign_of_product("negative", self._product_word(power))
 
     def _degree(self, product: _Product) -> int | None:
         """The degree of a product in the velocities; None where it is not homogeneous."""

@@ -16,14 +16,13 @@ import random
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flint import arb, arb_mat, fmpq_mat
-
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.rows import Row, constraint_rows
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
@@ -168,27 +167,24 @@ class _Disturbed:
         """r_I - J_I^T lambda to first order, by the names of the independent speeds."""
         names, about = self.system.coordinates, self.about
         needed = Oracle(self.system, self._disturbed).residuals
-        columns = self._places(about.dependent_speeds)
-        pivots = _pivot_rows(self.rows, columns)
-        rows = [self.rows[k] for k in pivots]
-        transposed = [[row.partials[i] for row in rows] for i in columns]
+        columns, rows = self._places(about.dependent_speeds), self.rows
         # J_D^T lambda = r_D in two orders: the constant part, then what the slopes of J leave of the first-order one.
-        constant = [[x.a for x in line] for line in transposed]
-        first = _solved(constant, [needed[names[i]].a for i in columns])
+        first = _multipliers(rows, columns, [needed[names[i]].a for i in columns])
         rest = []
-        for line, i in zip(transposed, columns, strict=True):
+        for i in columns:
             value = needed[names[i]].b
-            for x, force in zip(line, first, strict=True):
-                value = value - x.b * force
+            for k, force in first.items():
+                value = value - rows[k].partials[i].b * force
             rest.append(value)
-        second = _solved(constant, rest)
+        second = _multipliers(rows, columns, rest)
         duals = {}
         for name in about.speeds:
             i = names.index(name)
             a, b = needed[name].a, needed[name].b
-            for row, force, change in zip(rows, first, second, strict=True):
-                a = a - row.partials[i].a * force
-                b = b - row.partials[i].b * force - row.partials[i].a * change
+            for k, force in first.items():
+                partial = rows[k].partials[i]
+                a = a - partial.a * force
+                b = b - partial.b * force - partial.a * second[k]
             duals[name] = Dual(a, b)
         return duals
 
@@ -197,45 +193,25 @@ def _eliminated(
     rows: Sequence[Row], columns: Sequence[int], values: Sequence[Scalar]
 ) -> tuple[dict[int, Scalar], list[tuple[int, Scalar]]]:
     """y with J_columns y = values by chosen rows, by columns; and what the other rows leave over, by their numbers."""
-    pivots = _pivot_rows(rows, columns)
-    matrix = [[rows[k].partials[i].a for i in columns] for k in pivots]
-    solved = _solved(matrix, [values[k] for k in pivots])
-    rest = []
-    for k, row in enumerate(rows):
-        if k not in pivots:
-            value = values[k]
-            for i, y in zip(columns, solved, strict=True):
-                value = value - row.partials[i].a * y
-            rest.append((k, value))
-    return dict(zip(columns, solved, strict=True)), rest
+    lines = [[*(row.partials[i].a for i in columns), value] for row, value in zip(rows, values, strict=True)]
+    solution, rest = _solved(lines, len(columns))
+    return {columns[place]: y for place, y in solution.items()}, rest
 
 
-def _pivot_rows(rows: Sequence[Row], columns: Sequence[int]) -> list[int]:
-    """As many rows as columns that are independent there, the largest pivots preferred.  Raises SingularPoint."""
-    lines = {k: [row.partials[i].a for i in columns] for k, row in enumerate(rows)}
-    chosen = []
-    for c in range(len(columns)):
-        best = max(lines, key=lambda k: _size(lines[k][c]), default=None)
-        if best is None or _size(lines[best][c]) == 0:
-            raise SingularPoint("the constraints do not determine the dependent quantities")
-        pivot = lines.pop(best)
-        chosen.append(best)
-        for k, line in lines.items():
-            factor = line[c] / pivot[c]
-            lines[k] = [x - factor * y for x, y in zip(line, pivot, strict=True)]
-    return chosen
+def _multipliers(rows: Sequence[Row], columns: Sequence[int], values: Sequence[Scalar]) -> dict[int, Scalar]:
+    """lambda with J_columns^T lambda = values, by the numbers of as many rows."""
+    lines = [[*(row.partials[i].a for row in rows), value] for i, value in zip(columns, values, strict=True)]
+    return _solved(lines, len(columns))[0]
 
 
-def _size(x: Any) -> float:
-    """How far from zero a number certainly is."""
-    return float(x.abs_lower()) if isinstance(x, arb) else abs(float(x.p) / float(x.q))
+def _solved(lines: Sequence[Sequence[Scalar]], rank: int) -> tuple[dict[int, Scalar], list[tuple[int, Scalar]]]:
+    """x with A x = b of lines [A | b], by columns with a pivot; and what other lines leave over.
 
-
-def _solved(matrix: Sequence[Sequence[Scalar]], values: Sequence[Scalar]) -> list[Scalar]:
-    """y with matrix y = values.  Raises SingularPoint."""
-    size, balls = len(values), any(isinstance(x, arb) for row in (*matrix, values) for x in row)
-    kind: Any = arb_mat if balls else fmpq_mat
-    try:
-        return kind(size, size, [x for row in matrix for x in row]).solve(kind(size, 1, list(values))).entries()
-    except ZeroDivisionError:
-        raise SingularPoint("the constraints do not determine the dependent quantities") from None
+    Raises SingularPoint where the rank of A is not this.
+    """
+    table = eliminated(lines, range(len(lines[0]) - 1 if lines else 0))
+    if table.rank != rank:
+        raise SingularPoint("the constraints do not determine the dependent quantities")
+    solution = {column: table.rows[k][-1] for k, column in table.pivots}
+    pivots = {k for k, _ in table.pivots}
+    return solution, [(k, row[-1]) for k, row in enumerate(table.rows) if k not in pivots]

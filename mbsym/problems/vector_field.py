@@ -4,17 +4,20 @@
 
 Variables are the velocities or speeds u (under constraints in velocities those that are independent, in the equations
 without multipliers), and what X holds of positions, by itself or in functions: coordinates, unit vectors and
-quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the exponent, and the
-relation between those whose exponents are dependent; square roots, r^2 = p, r' = r p'/(2 p), and with one of them alone
-1/p; phases that are driven at a rate.  Each variable brings in what its own derivative holds.  Positions on which
-nothing depends are left out; constraints on positions are relations between those that are left, or give one by others.
+quaternions; the sine and cosine of an angle, with s^2 + c^2 = 1; exponentials, e' = e a' with a the exponent, those of
+a basis of the lattice that exponents span, or one relation between them; square roots, r^2 = p, r' = r p'/(2 p), and
+with one of them alone 1/p; for problem 9 reciprocals w = 1/p, w' = -w^2 p'; phases that are driven at a rate. Each
+variable brings in what its own derivative holds. Positions on which nothing depends are left out; constraints on
+positions are relations between those that are left, or give one by others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from math import gcd, lcm
+from itertools import combinations, islice
+from math import gcd, lcm, prod
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +27,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.factors import occurring, rational_ratio
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.kernel import independent
-from mbsym.algebra.matrices import cramer, determinant
+from mbsym.algebra.matrices import cramer, determinant, null_space_of_polynomials
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
@@ -38,6 +41,8 @@ if TYPE_CHECKING:
 
 #: No relations between parameters.
 NOTHING: Mapping[int, Polynomial] = {}
+#: Sets of exponentials that are tried as those of which others are powers.
+MOST_BASES = 200
 #: Why there is no field x' = f(x).
 SINGULAR = "the mass matrix is singular everywhere, so that the equations do not determine all accelerations"
 
@@ -48,16 +53,28 @@ def vector_field(
     also: Sequence[Polynomial] = (),
     images: Mapping[int, Polynomial] = NOTHING,
     driven: bool = False,
+    rooted: bool = False,
 ) -> tuple[PolynomialField, Transfer]:
     """x' over QQ[parameters], with det(M) as a part of the denominator, and the way from the ring there.
 
     Parameters are those that occur in the equations and in ``also``, where ``images`` (by generator) take the place of
-    dependent ones; phases are variables where they may be ``driven``.  Raises NoClosedForm where M is singular, and
-    where the time, inputs, roots or functions other than exponentials occur.
+    dependent ones; phases are variables where they may be ``driven``.  Where it may be ``rooted`` square roots of
+    numbers are parameters of the field, with their squares, and reciprocals of polynomials in positions are variables
+    if their relations are solved.  Raises NoClosedForm where M is singular, and where the time, inputs, other roots or
+    functions other than exponentials occur.
     """
-    state = _State(form, equations, images, driven)
+    tied = equations.constraints
+    if rooted and (tied is None or not tied.position_rank):  # else reciprocals may be tied by what ties positions
+        with suppress(NoClosedForm):
+            field, transfer = _of(_State(form, equations, images, driven, rooted, divided=True), also)
+            if field.are_solved:
+                return field, transfer
+    return _of(_State(form, equations, images, driven, rooted), also)
+
+
+def _of(state: _State, also: Sequence[Polynomial]) -> tuple[PolynomialField, Transfer]:
     variables = state.variables()
-    images, ring = state.images, form.ring
+    images, ring = state.images, state.ring
     relations = state.relations(variables)
     polynomials = [state.determinant, *variables.values()]
     fractions = [ring.fraction(p, state.kept) for p in polynomials]
@@ -66,7 +83,8 @@ def vector_field(
     also = [p for x in also for p in (ring.fraction(x)[0], *(f for f, _ in ring.fraction(x)[1]))]
     places = {k: state.name(k) for k in variables}
     parameters = occurring([*(p for p, _ in fractions), *held, *relations, *also])
-    parameters = [k for k in parameters if k not in places and ring.generators[k].kind == "parameter"]
+    roots = [k for k in parameters if is_number_root(ring, k)]
+    parameters = [k for k in parameters if k not in places and ring.generators[k].kind == "parameter"] + roots
     transfer = Transfer(ring, places, parameters, images, state.kept)
     tops, bottoms = zip(*(transfer.fraction(p) for p in polynomials), strict=True)
     common: Any = bottoms[0]
@@ -82,6 +100,7 @@ def vector_field(
         tuple(moved),
         denominator,
         tuple(map(transfer, relations)),
+        roots=tuple((transfer.name(k), transfer(ring.generators[k].argument)) for k in roots),
         units=units,
     )
     return on_rows(field) if state.rows else field, transfer
@@ -107,10 +126,21 @@ def on_rows(field: PolynomialField) -> PolynomialField:
 class _State:
     """Generators of the ring as variables: how each moves, how it is called, what ties it to others."""
 
-    def __init__(self, form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial], driven: bool) -> None:
+    def __init__(
+        self,
+        form: SpeedForm,
+        equations: Equations,
+        images: Mapping[int, Polynomial],
+        driven: bool,
+        rooted: bool,
+        divided: bool = False,
+    ) -> None:
         system, ring = form.system, form.ring
+        self.rooted, self.divided = rooted, divided
         self.ring, self.equations = ring, equations
         free, tied, self.rows = _free(form, equations, images)
+        self.rates = {name: put_in(ring, rate, tied) for name, rate in form.rates.items()}
+        images = {**images, **self._powers()}
         self.images, self.driven = {**images, **tied}, driven
         mass, forcing = free.mass_matrix.polynomials, [x.polynomial for x in free.forcing]
         whole = determinant(ring, mass)
@@ -118,22 +148,27 @@ class _State:
             raise NoClosedForm(SINGULAR)
         self.determinant, *scaled = (put_in(ring, p, images) for p in (whole, *cramer(ring, mass, forcing)))
         self.unknowns = {u.index: u.name for u in form.speeds if u.index not in tied}
-        self.rates = {name: put_in(ring, rate, tied) for name, rate in form.rates.items()}
         self.accelerations = dict(zip(self.unknowns, scaled, strict=True))
         lower = Lowering(ring, ring_environment(system, ring))
         self.rates |= {item.name: lower(item.rate) for item in system.prescribed if driven}
 
     @property
     def kept(self) -> list[int]:
-        """Reciprocals that are variables, and no denominators: of exponentials, and of what stands under a root."""
+        """Reciprocals that are variables, and no denominators: of exponentials, positions, of what is under a root."""
         ring = self.ring
         reciprocals = (k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal")
         return [*(k for k in reciprocals if self._exponent(k) is not None), *self._inverse]
 
     @property
     def _inverse(self) -> list[int]:
-        """1/p, where p stands under the only root and its leading coefficient is 1, so that 1/p leads a relation."""
+        """1/p, where p stands under the only root and its leading coefficient is 1, so that 1/p leads a relation.
+
+        Where it is ``divided``, of all p in positions.
+        """
         ring = self.ring
+        if self.divided:
+            reciprocals = (k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal")
+            return [k for k in reciprocals if self._is_of_positions(ring.generators[k].argument)]
         squares = [ring.generators[k].argument for k in range(ring.spare) if self._is_root(k)]
         if len(squares) != 1 or any(
             g.kind == "parameter" and power for g, power in zip(ring.generators, squares[0].monomial(0), strict=True)
@@ -157,7 +192,11 @@ class _State:
         tied = {name for sides in self.equations.products for _, names in sides for name in names}
         moved = [k for k in held if ring.generators[k].kind in kinds and self._follows(k)]
         moved = [k for k in moved if ring.generators[k].name not in tied]  # of unit vectors squares are sums of others
-        fixed = {k for k in ring.held([argument]) if ring.generators[k].kind in ("parameter", "reciprocal")}
+        fixed = {
+            k
+            for k in ring.held([argument])
+            if ring.generators[k].kind in ("parameter", "reciprocal") or is_number_root(ring, k)
+        }
         return (
             bool(moved)
             and {*moved, *fixed}.issuperset(held)
@@ -177,11 +216,8 @@ class _State:
             return None
         held = [(i, ring.generators[i]) for i in occurring([g.argument])]
         moved = [i for i, generator in held if self._follows(i)]
-        return (
-            sign * g.argument
-            if moved and all(i in moved or generator.kind == "parameter" for i, generator in held)
-            else None
-        )
+        constant = all(i in moved or generator.kind == "parameter" or is_number_root(ring, i) for i, generator in held)
+        return sign * g.argument if moved and constant else None
 
     def _follows(self, k: int) -> bool:
         """Whether it is a position, a sine or a cosine that moves as ``rates`` say."""
@@ -207,7 +243,8 @@ class _State:
     def _moving(self, held: Iterable[int]) -> set[int]:
         """Generators that are no parameters, sines with their cosines."""
         generators = self.ring.generators
-        return {i for k in held for i in (k, self._partner(k)) if generators[i].kind != "parameter"}
+        fixed = {k for k in held if generators[k].kind == "parameter" or (self.rooted and is_number_root(self.ring, k))}
+        return {i for k in held if k not in fixed for i in (k, self._partner(k))}
 
     def _felt(self, variables: Collection[int]) -> list[Polynomial]:
         """The rows without those that only give a position that is no variable; it is put in where they are linear."""
@@ -281,7 +318,11 @@ class _State:
         for k in variables:
             if ring.generators[k].kind == "sine":
                 found.append(ring.context.gen(k) ** 2 + ring.context.gen(self._partner(k)) ** 2 - 1)
-        found += [ring.context.gen(k) * ring.generators[k].argument - 1 for k in variables if k in self._inverse]
+        inverse = [k for k in variables if k in self._inverse]
+        beside = {k: self._moving(occurring([ring.generators[k].argument])) for k in inverse}
+        alone = [k for k in inverse if beside[k].isdisjoint(variables)]
+        found += [ring.context.gen(k) * ring.generators[k].argument - 1 for k in inverse if k not in alone]
+        between = self._between_reciprocals(alone)
         names = {ring.generators[k].name for k in variables}
         for (name, components), (other, others) in self.equations.products:
             if names.issuperset((*components, *others)):
@@ -294,8 +335,19 @@ class _State:
         tied = self._between_exponentials(exponentials)
         angles = [k for k in variables if ring.generators[k].kind == "sine" and ring.generators[k].argument is not None]
         apart = {*exponentials, *angles, *map(self._partner, angles)}
-        self._refuse_dependent([*exponentials, *angles], [k for k in variables if k not in apart], len(tied))
-        return [*found, *tied]
+        left = [k for k in variables if k not in apart and k not in alone]
+        self._refuse_dependent([*exponentials, *angles, *alone], left, len(tied) + len(between))
+        return [*found, *tied, *between]
+
+    def _between_reciprocals(self, places: Sequence[int]) -> list[Polynomial]:
+        """sum_k c_k prod_(j != k) w_j  of the reciprocals w of positions p with  sum_k c_k p_k = 0, if there is one."""
+        ring = self.ring
+        columns, count = _in_monomials([ring.generators[k].argument for k in places]).nullspace()
+        held = (
+            [(ring.context.gen(k), c) for n, k in enumerate(places) if (c := int(columns[n, 0]))] if count == 1 else []
+        )
+        terms = [prod((x for x, _ in held if x is not w), start=ring.one) * c for w, c in held]
+        return [sum(terms, ring.zero) / sum(terms, ring.zero).leading_coefficient()] if terms else []
 
     def _refuse_dependent(self, functions: Sequence[int], others: Sequence[int], tied: int) -> None:
         """Raises NoClosedForm where variables are functions of each other but for relations: ranks would mislead."""
@@ -304,9 +356,12 @@ class _State:
         under = sorted({name for a in exponents for name in ring.dependencies(a, self.rates)})
         beside = [self.name(k) for k in others if k not in self.unknowns and ring.generators[k].name in under]
         chance = Random("exponents")
-        point = [fmpq(chance.randint(2, 99)) for _ in ring.generators]
-        slopes = [[ring.derivative(a, name)(*point) for name in under] for a in exponents]
-        if beside or (slopes and fmpq_mat(slopes).rank() < len(slopes) - tied):
+        point = [
+            x if is_number_root(ring, k) else ring.number(chance.randint(2, 99))
+            for k, x in enumerate(ring.context.gens())
+        ]
+        slopes = [[ring.reduce(ring.derivative(a, name).compose(*point)) for name in under] for a in exponents]
+        if beside or len(null_space_of_polynomials(ring, list(zip(*slopes, strict=True)), len(slopes))) > tied:
             dependent = ", ".join([*map(self.name, functions), *beside])
             raise NoClosedForm(
                 "[[names]] are functions of each other: they cannot all be variables",
@@ -315,35 +370,97 @@ class _State:
             )
 
     def _between_exponentials(self, places: Sequence[int]) -> list[Polynomial]:
-        """exp(a)^m exp(b)^n ... = exp(c)^k ... for the integers with  m a + n b + ... = k c + ...
+        """exp(a) exp(-a) = 1, and exp(a)^m exp(b)^n ... = exp(c)^k ... for integers with  m a + n b + ... = k c + ...
 
         Raises NoClosedForm where only constants are left of such a sum, or several are zero.
         """
-        if not places:
-            return []
-        ring, exponents = self.ring, [self._exponent(k) for k in places]
-        free = [
-            x if g.kind == "parameter" else ring.zero for g, x in zip(ring.generators, ring.context.gens(), strict=True)
-        ]
-        moving = [(a - a.compose(*free)).to_dict() for a in exponents]
-        rows = [[a.get(m, fmpq(0)) for a in moving] for m in sorted({m for a in moving for m in a})]
-        rows = [[x * lcm(*(int(y.q) for y in row)) for x in row] for row in rows]
-        columns, count = fmpz_mat([[int(x.p) for x in row] for row in rows]).nullspace()
+        ring = self.ring
+        apart, inverses = self._up_to_inverses(places)
+        between = [ring.context.gen(j) * ring.context.gen(k) - 1 for j, k in inverses.items()]
+        columns, count = self._exponents_of(apart).nullspace()
         if not count:
-            return []
-        column = [int(columns[k, 0]) for k in range(len(places))]
+            return between
+        column = [int(columns[k, 0]) for k in range(len(apart))]
         powers = [x // gcd(*column) for x in column]
-        if count > 1 or not ring.vanishes(ring.dot(exponents, [ring.number(n) for n in powers])):
+        if between or count > 1 or not self._are_one(apart, powers):
             raise NoClosedForm(
                 "the exponentials [[names]] are related in several ways, or by a constant factor",
                 names=", ".join(map(self.name, places)),
                 remedy="write them as powers of fewer exponentials",
             )
         sides = [ring.one, ring.one]
-        for k, n in zip(places, powers, strict=True):
+        for k, n in zip(apart, powers, strict=True):
             sides[int(n < 0)] = sides[int(n < 0)] * ring.context.gen(k) ** abs(n)
         difference = sides[0] - sides[1]
-        return [difference / difference.leading_coefficient()]
+        return [*between, difference / difference.leading_coefficient()]
+
+    def _powers(self) -> dict[int, Polynomial]:
+        """Exponentials as products of powers of some of them and of reciprocals, where several relations hold.
+
+        Exponents span a lattice over the integers.  Those that are a basis of it are taken; {} where none are.
+        """
+        ring = self.ring
+        apart, inverses = self._up_to_inverses(
+            [k for k in reversed(range(ring.spare)) if self._exponent(k) is not None]
+        )
+        exponents = fmpq_mat(self._exponents_of(apart))
+        size = exponents.rank()
+        if len(apart) - size + bool(inverses) < 2 or len(apart) == size:
+            return {}
+        bases = []
+        for basis in islice(combinations(range(len(apart)), size), MOST_BASES):
+            columns = [*basis, *(j for j in range(len(apart)) if j not in basis)]
+            rows, _ = fmpq_mat([[row[j] for j in columns] for row in exponents.tolist()]).rref()
+            held = [apart[j] for j in basis]
+            powers = {apart[j]: [rows[i, k] for i in range(size)] for k, j in enumerate(columns) if k >= size}
+            if all(rows[i, i] == 1 for i in range(size)) and all(n.q == 1 for row in powers.values() for n in row):
+                product = {j: dict(zip(held, map(int, row), strict=True)) for j, row in powers.items()}
+                if all(self._are_one([j, *held], [-1, *own.values()]) for j, own in product.items()):
+                    bases.append(product)
+        if not bases:
+            return {}
+        shortest = min(bases, key=lambda product: sum(abs(n) for own in product.values() for n in own.values()))
+        signed = [(j, 1, own) for j, own in shortest.items()]
+        signed += [(inverses[j], -1, own) for j, _, own in signed if j in inverses]
+        images = {}
+        for k, sign, own in signed:
+            factors = [(j if sign * n > 0 else self._reciprocal(j, inverses), abs(n)) for j, n in own.items() if n]
+            images[k] = prod((ring.context.gen(j) ** n for j, n in factors), start=ring.one)
+        return images
+
+    def _reciprocal(self, k: int, inverses: Mapping[int, int]) -> int:
+        """The generator that is 1/exp(a) of the generator exp(a)."""
+        return inverses[k] if k in inverses else occurring([self.ring.reciprocal(self.ring.context.gen(k))])[0]
+
+    def _up_to_inverses(self, places: Sequence[int]) -> tuple[list[int], dict[int, int]]:
+        """Exponentials of which none is the reciprocal of another; and the reciprocals of some of them, by these."""
+        apart, inverses = list[int](), dict[int, int]()
+        for k in places:
+            other = next((j for j in apart if self._are_one([j, k], [1, 1])), None)
+            if other is None:
+                apart.append(k)
+            else:
+                inverses[other] = k
+        return apart, inverses
+
+    def _exponents_of(self, places: Sequence[int]) -> fmpz_mat:
+        """What moves of the exponents, in columns: rational multiples of monomials, a row for each, times a number."""
+        gens = zip(self.ring.generators, self.ring.context.gens(), strict=True)
+        still = [x if g.kind in ("parameter", "root") else self.ring.zero for g, x in gens]
+        return _in_monomials([a - a.compose(*still) for a in map(self._exponent, places)])
+
+    def _are_one(self, places: Sequence[int], powers: Sequence[int]) -> bool:
+        """Whether the product of these powers of exponentials is 1."""
+        ring = self.ring
+        return ring.vanishes(ring.dot(list(map(self._exponent, places)), list(map(ring.number, powers))))
+
+
+def _in_monomials(polynomials: Sequence[Polynomial]) -> fmpz_mat:
+    """Their coefficients in columns, a row for each monomial, times a number."""
+    parts = [p.to_dict() for p in polynomials]
+    rows = [[part.get(m, fmpq(0)) for part in parts] for m in sorted({m for part in parts for m in part})]
+    whole = [int((x * lcm(*(int(y.q) for y in row))).p) for row in rows for x in row]
+    return fmpz_mat(len(rows), len(parts), whole)
 
 
 def _free(
@@ -363,6 +480,12 @@ def _free(
     told = [tied.position[k] for k in tied.independent]
     rows = [put_in(ring, ring.fraction(row.polynomial)[0], images) for row in told if row is not None]
     return equations.embedded, dependent_velocities(form, tied.solved), rows
+
+
+def is_number_root(ring: Ring, k: int) -> bool:
+    """Whether the generator is the square root of a number; the ring takes those of primes, which are independent."""
+    g = ring.generators[k]
+    return g.kind == "root" and g.argument.is_constant()
 
 
 def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:
@@ -385,10 +508,18 @@ class Transfer:
         kept: Collection[int] = (),
     ) -> None:
         self.ring, self.images, self.kept = ring, images, kept
-        self.parameters = tuple(ring.generators[k].name for k in parameters)
+        self.parameters = tuple(map(self.name, parameters))
         self.variables = tuple(places.values())
         self.places = (*parameters, *places)
         self.context: Any = fmpq_mpoly_ctx.get([*self.parameters, *self.variables], Ordering.lex)
+
+    def name(self, k: int) -> str:
+        """Of a parameter: itself, or ``sqrt(3)``."""
+        return str(
+            self.ring.generators[k].name
+            if self.ring.generators[k].argument is None
+            else Formula(self.ring, self.ring.context.gen(k))
+        )
 
     def __call__(self, p: Polynomial) -> Any:
         degrees = p.degrees()

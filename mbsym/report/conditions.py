@@ -337,8 +337,8 @@ class Shown:
 
 _HELD = (
     "while the inputs keep their values on the unperturbed motion",
-    "while the inputs keep their values on the unperturbed motion, for which the condition of problem 4 holds",
-    "while the inputs keep their values on the unperturbed motion, for which the conditions of problem 4 hold",
+    "while the inputs keep their values on the unperturbed motion, for which its condition (problem 4) holds",
+    "while the inputs keep their values on the unperturbed motion, for which its conditions (problem 4) hold",
 )
 
 
@@ -359,7 +359,11 @@ def provided(stability: Stability, motion: Equilibrium | None, inputs: bool = Fa
         return _HELD[min(count, 2)]
     if count == 0:
         return ""
-    return "provided the condition of problem 4 holds" if count == 1 else "provided the conditions of problem 4 hold"
+    return (
+        "provided the condition of the motion (problem 4) holds"
+        if count == 1
+        else "provided the conditions of the motion (problem 4) hold"
+    )
 
 
 def factors(part: SubsystemStability) -> list[tuple[list[Formula], int]]:

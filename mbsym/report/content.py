@@ -266,6 +266,10 @@ class Phrase:
     parts: tuple[Inline, ...]
 
 
+class Under(Phrase):
+    """A line of a fact that belongs to the last one that is under none."""
+
+
 @dataclass(frozen=True)
 class Emphasis:
     """A name in italics: that of a body."""

@@ -148,7 +148,7 @@ def accelerations(analysis: Analysis) -> Column:
     n = len(equations.forcing)
     if n > MOST_SOLVED:
         text = "accelerations of so many coordinates ([[count]]) fill pages; model.py computes them"
-        raise NoClosedForm(Message(text, count=n))
+        raise NoClosedForm(text, count=n)
     ring = equations.forcing[0].ring
     rows = [[x.polynomial for x in row] for row in equations.mass_matrix]
     tops = cramer(ring, rows, [x.polynomial for x in equations.forcing])
@@ -365,7 +365,7 @@ def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
     """The same in the new variables of ``formulas``.  Raises Failure for what is no formula of one row."""
     if name not in CARRIED:
         text = "no description has these variables, in which there are only [[names]]"
-        raise NoClosedForm(Message(text, names=", ".join(CARRIED)))
+        raise NoClosedForm(text, names=", ".join(CARRIED))
     for line in lines(formulas.analysis, name):
         if not isinstance(line.value, Formula):
             continue

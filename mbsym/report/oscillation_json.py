@@ -10,7 +10,7 @@ from msgspec import UNSET, UnsetType
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
-from mbsym.problems.small_parameter.result import Harmonics
+from mbsym.problems.small_parameter.result import Harmonics, Phase, multiples
 from mbsym.report.documents import oscillations as doc
 from mbsym.report.documents.base import file_of, finite
 from mbsym.report.words.expansion_words import sum_of_powers
@@ -42,17 +42,14 @@ def oscillation_data(solution: Oscillating, measured: MeasuredOrders | str) -> d
         amplitude=_amplitude(solution),
         exponent=_exponent(solution),
         constants=[(name, text(x)) for name, x in oscillation.constants],
-        frequency=text(oscillation.frequency),
-        corrections=list(map(text, oscillation.corrections)),
-        phase_rate=sum_of_powers(
-            (
-                (n, text(oscillation.frequency * x))
-                for n, x in enumerate((oscillation.tower.one, *oscillation.corrections))
-                if not x.is_zero()
-            ),
-            oscillation.small,
-            "**",
-        ),
+        **_turning(solution, oscillation.phases[0]),
+        further_phases=[
+            doc.FurtherPhase(
+                phase=name, leading=phase.leading, amplitude=text(phase.amplitude), **_turning(solution, phase)
+            )
+            for name, phase in zip(solution.phases[1:], oscillation.phases[1:], strict=True)
+        ]
+        or UNSET,
         solution=[
             doc.Solution(
                 variable=name,
@@ -69,6 +66,7 @@ def oscillation_data(solution: Oscillating, measured: MeasuredOrders | str) -> d
         resonances=[
             doc.Resonance.from_result(
                 divisor,
+                harmonic=_multiples(divisor.harmonic, len(solution.phases)),
                 vanishes=str(numerator(solution, divisor.value)),
                 vanishes_too=UNSET if divisor.damping is None else str(numerator(solution, divisor.damping)),
             )
@@ -79,6 +77,22 @@ def oscillation_data(solution: Oscillating, measured: MeasuredOrders | str) -> d
         conditions=[str(x) for x in _positive(solution)],
         measured=measured_data(measured),
     )
+
+
+def _turning(solution: Oscillating, phase: Phase) -> dict[str, Any]:
+    """The frequency, its corrections, and the rate that they make."""
+    rates = [phase.frequency * x for x in (solution.oscillation.tower.one, *phase.corrections)]
+    texts = [(n, str(solution.formula(x))) for n, x in enumerate(rates) if not x.is_zero()]
+    return {
+        "frequency": str(solution.formula(phase.frequency)),
+        "corrections": [str(solution.formula(x)) for x in phase.corrections],
+        "phase_rate": sum_of_powers(texts, solution.oscillation.small, "**"),
+    }
+
+
+def _multiples(k: int, phases: int) -> int | list[int]:
+    """One number of one phase."""
+    return k if phases == 1 else list(multiples(k, phases))
 
 
 def _amplitude(solution: Oscillating) -> doc.AmplitudeValue:
@@ -97,8 +111,9 @@ def _exponent(solution: Oscillating) -> doc.CycleExponent | UnsetType:
 def _positive(solution: Oscillating) -> Iterator[Formula]:
     """Squares that have to be positive for frequency and amplitude to be real, and are not known to be."""
     oscillation = solution.oscillation
-    if not solution.real:
-        yield solution.formula(oscillation.frequency * oscillation.frequency)
+    for phase in oscillation.phases:
+        if not solution.real:
+            yield solution.formula(phase.frequency * phase.frequency)
     if not solution.real_amplitude:
         yield solution.formula(oscillation.amplitude * oscillation.amplitude)
 

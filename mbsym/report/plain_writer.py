@@ -412,8 +412,9 @@ class Writer:
         width = max(map(len, labels), default=0) + 2
         for label, fact in zip(labels, value.items, strict=True):
             for k, said in enumerate(fact.lines):
-                name = (label.ljust(width), _style(fact.name) or TITLE) if k == 0 else (" " * width, "")
-                yield Line((name, *self._shown((said,))), margin=width + 2)
+                deeper = width + 2 * isinstance(said, content.Under)
+                name = (label.ljust(deeper), _style(fact.name) or TITLE) if k == 0 else (" " * deeper, "")
+                yield Line((name, *self._shown((said,))), margin=deeper + 2)
 
     @block.register
     def _(self, value: content.Cited) -> Iterator[Line]:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -25,7 +24,9 @@ from multiprocessing.context import BaseContext
 from time import monotonic
 from typing import Any
 
-from mbsym.serving.worker import OUT_OF_MEMORY, attend
+from mbsym.batch.isolation import how_it_ended
+from mbsym.batch.worker import SINGLE
+from mbsym.serving.worker import attend
 
 Event = dict[str, Any]
 
@@ -37,19 +38,15 @@ MOST_LOADING = 120.0
 
 _ENDS = ("done", "failed", "cancelled")
 
-#: One thread of arithmetic for each process.
-_SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-
-
 _ENVIRONMENT = threading.Lock()
 
 
 @contextmanager
 def _single_threaded() -> Iterator[None]:
-    """A process that starts meanwhile inherits ``_SINGLE``; one thread at a time, as the environment is everybody's."""
+    """A process that starts meanwhile inherits ``SINGLE``; one thread at a time, as the environment is everybody's."""
     with _ENVIRONMENT:
-        before = {name: os.environ.get(name) for name in _SINGLE}
-        os.environ.update(_SINGLE)
+        before = {name: os.environ.get(name) for name in SINGLE}
+        os.environ.update(SINGLE)
         try:
             yield
         finally:
@@ -271,7 +268,7 @@ class Jobs:
         finally:
             process.kill()
             code = process.bury()
-            job.say({"kind": "failed", "words": self._last_words(code)})
+            job.say({"kind": "failed", "words": str(how_it_ended(code, self._memory))})
             self._forget(job)
 
     def _heard(self, job: _Job, process: _Process, task: dict[str, Any]) -> None:
@@ -293,14 +290,6 @@ class Jobs:
                     job.say(message)
         except (EOFError, OSError):  # it has ended; its code says why
             return
-
-    def _last_words(self, code: int | None) -> str:
-        if code == OUT_OF_MEMORY:
-            return f"more than {self._memory // 2**20} MB were wanted"
-        if code is not None and code < 0:
-            with suppress(ValueError):
-                return f"its process was ended by {signal.Signals(-code).name}"
-        return "its process is gone" if code is None else f"its process ended with code {code}"
 
     def _forget(self, job: _Job) -> None:
         with self._lock:

@@ -10,8 +10,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mbsym.editing import explanation, suggestions
+from mbsym.editing import explanation, place, suggestions
 from mbsym.editing.document import look
+from mbsym.editing.document.view import content, math, moved, told
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.source import read, to_text, to_yaml
 from mbsym.source.starter import NewBody, starter
@@ -113,22 +114,11 @@ def changed(text: str, name: str, operations: list[Any], folder: Path | None) ->
 
 def complaints_json(complaints: list[Complaint], places: Offsets) -> list[dict[str, Any]]:
     """Complaints of the seam."""
-    listed = []
-    for complaint in complaints:
-        start, end = places.of_span(complaint.span)
-        listed.append(
-            {
-                "severity": complaint.severity,
-                "code": complaint.code,
-                "message": complaint.message,
-                "hint": complaint.hint,
-                "from": start,
-                "to": end,
-                "line": complaint.span.line if complaint.span else 1,
-                "column": complaint.span.column if complaint.span else 1,
-            }
-        )
-    return listed
+    spans = [complaint.span or Span(1, 1, 0) for complaint in complaints]
+    return [
+        told(complaint, *places.of_span(span), span.line, span.column)
+        for complaint, span in zip(complaints, spans, strict=True)
+    ]
 
 
 def completed(text: str, offset: int, system: System | None) -> dict[str, Any]:
@@ -155,14 +145,9 @@ def word_at(text: str, offset: int) -> tuple[int, int, int, int]:
     """Line and column (from 0, in characters) of a place, and the word around it in units."""
     places = Offsets(text)
     at = places.characters(offset)
-    line = text.count("\n", 0, at)
-    column = at - (text.rfind("\n", 0, at) + 1)
-    start, end = at, at
-    while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
-        start -= 1
-    while end < len(text) and (text[end].isalnum() or text[end] == "_"):
-        end += 1
-    return line, column, places.units(start), places.units(end)
+    line, begin = text.count("\n", 0, at), text.rfind("\n", 0, at) + 1
+    _, start, end = place.word_at(text[begin:].partition("\n")[0], at - begin)
+    return line, at - begin, places.units(begin + start), places.units(begin + end)
 
 
 def hovered(text: str, offset: int) -> dict[str, Any] | None:
@@ -183,21 +168,17 @@ def converted(text: str, name: str, to: str, folder: Path | None) -> dict[str, A
 def typed_formula(source: str) -> dict[str, Any]:
     """MathML of a formula as it is typed, or what is wrong with it."""
     from mbsym.expressions.parser import parse_expression
-    from mbsym.expressions.tree import names
-    from mbsym.formulas.mathml import MathNames
-    from mbsym.report.html.description import expression
 
     wrong = Complaints()
     if len(source) > MOST_FORMULA:
         wrong.error("too-long", f"a formula that is shown has at most {MOST_FORMULA} characters")
         tree = None
     else:
-        flat = " ".join(source.split())
-        tree = parse_expression(flat, wrong)
+        tree = parse_expression(" ".join(source.split()), wrong)
     if tree is None or wrong.errors:
         listed = complaints_json(wrong.sorted(), Offsets(source))
         return {"complaint": listed[0] if listed else None}
-    return {"mathml": f"<math>{expression(tree, MathNames(sorted(names(tree))))}</math>"}
+    return {"mathml": math(content(tree))}
 
 
 class Offsets:
@@ -228,23 +209,14 @@ class Offsets:
             self._lines = [0, *(place + 1 for place, x in enumerate(self.text) if x == "\n")]
         return self._lines[line - 1] if 0 < line <= len(self._lines) else len(self.text)
 
-    def of_span(self, span: Span | None) -> tuple[int, int]:
-        """From and to, in units; the beginning for what is about the whole."""
-        if span is None:
-            return 0, 0
+    def of_span(self, span: Span) -> tuple[int, int]:
+        """From and to, in units."""
         start = self.line_start(span.line) + span.column - 1
         return self.units(start), self.units(start + span.length)
 
     def in_units(self, value: Any) -> Any:
-        """A JSON value whose places (keys ``from`` and ``to`` with whole numbers) are in characters, with units."""
-        if self.text.isascii() or not self._wide:
-            return value
-        if isinstance(value, dict):
-            return {
-                key: self.units(x) if key in ("from", "to") and type(x) is int else self.in_units(x)
-                for key, x in value.items()
-            }
-        return [self.in_units(x) for x in value] if isinstance(value, (list, tuple)) else value
+        """A JSON value whose places are in characters, with units."""
+        return moved(value, self.units) if self._wide else value
 
 
 # What a request holds, taken out of JSON that anybody may have written.

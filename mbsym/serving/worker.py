@@ -14,7 +14,6 @@ from base64 import b64encode
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from fractions import Fraction
-from math import isfinite
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,38 +22,24 @@ from markupsafe import escape
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.parts import missing
+from mbsym.batch.worker import OUT_OF_MEMORY, PENDULUM, bounded, hang_on
 from mbsym.source import read
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
 
-#: Exit codes: the memory that a job may have was not enough.
-OUT_OF_MEMORY = 75
-
 #: Tasks that fill a page by and by.
 PATIENT = ("derive", "export", "map")
-
-_WARMING = """\
-mbsym: 1
-name: pendulum
-parameters: {m: positive, l: positive, g: positive}
-bodies:
-  - {name: bob, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [0, -l, 0], mass: m,
-     inertia about: mass centre, inertia: [0, 0, 0]}
-loads:
-  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
-motion: {x: 0}
-"""
 
 
 def warm() -> None:
     """Loads what every job needs, and has used it once."""
 
     with suppress(Exception):
-        for _ in perform({"kind": "derive", "text": _WARMING, "name": "pendulum.yaml", "problems": [1, 3, 6]}):
+        for _ in perform({"kind": "derive", "text": PENDULUM, "name": "pendulum.yaml", "problems": [1, 3, 6]}):
             pass
-        for _ in perform({"kind": "picture", "text": _WARMING, "name": "pendulum.yaml"}):
+        for _ in perform({"kind": "picture", "text": PENDULUM, "name": "pendulum.yaml"}):
             pass
 
 
@@ -67,8 +52,8 @@ def attend(connection: Connection, memory: int, cold: bool = False) -> None:
         connection.send({"kind": "ready"})
         task: dict[str, Any] = connection.recv()
         _step_back(task)
-        _hang_on(connection.fileno())
-        _bound(memory)
+        hang_on(connection.fileno())
+        bounded(memory)
 
         for message in perform(task):
             connection.send(message)
@@ -96,37 +81,6 @@ def _step_back(task: dict[str, Any]) -> None:
     if task.get("kind") in PATIENT and hasattr(os, "nice"):
         with suppress(OSError):
             os.nice(10)
-
-
-def _bound(memory: int) -> None:
-    """No more than so many bytes, where the system has such a bound; and no core dumps."""
-    try:
-        import resource
-    except ImportError:
-        return
-    with suppress(ValueError, OSError):
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    with suppress(ValueError, OSError):
-        kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
-        resource.setrlimit(kind, (memory, memory))
-
-
-def _hang_on(handle: int) -> None:
-    """A signal that ends this process comes from the system itself when the other end is closed, also amid algebra
-    that does not let threads run."""
-    try:
-        import fcntl
-        import select
-        import signal
-
-        signal.signal(signal.SIGIO, signal.SIG_DFL)
-        fcntl.fcntl(handle, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(handle, fcntl.F_SETFL, fcntl.fcntl(handle, fcntl.F_GETFL) | os.O_ASYNC)
-        gone = select.select([handle], [], [], 0)[0]
-    except (ImportError, AttributeError, OSError, ValueError):
-        return
-    if gone:
-        os._exit(1)
 
 
 # What a job does, in a process of its own: a generator of what there is to tell, section by section.
@@ -166,6 +120,14 @@ def _system(task: Task) -> System:
         first = next(iter(complaints.errors), None)
         raise Refused("the description has mistakes" + (f": {first.message}" if first else ""))
     return system
+
+
+def _rational(value: object, words: str) -> Fraction:
+    """Raises Refused, with these words."""
+    try:
+        return Fraction(str(value))
+    except (ValueError, ZeroDivisionError) as error:
+        raise Refused(words) from error
 
 
 # --- results ----------------------------------------------------------------------------------------------------------
@@ -276,14 +238,11 @@ def _simulate(task: Task, system: System) -> Iterator[Message]:
     from mbsym.simulation.request import read_values
 
     overrides = read_values(system, task.get("set") or {})
-    try:
-        until = float(Fraction(str(task["time"])))
-    except (ValueError, ZeroDivisionError, OverflowError) as error:
-        raise Refused("the time is a number above 0") from error
-    if not (isfinite(until) and until > 0):
+    until = _rational(task["time"], "the time is a number above 0")
+    if not 0 < until <= sys.float_info.max:
         raise Refused("the time is a number above 0")
     yield {"kind": "progress", "words": "the equations are integrated"}
-    request = Request(time=until, method=str(task.get("method") or "auto"))
+    request = Request(time=float(until), method=str(task.get("method") or "auto"))
     solved_motion = motion(system, request, overrides)
     velocity_names = [name for name in picture(system, overrides).program.inputs if name.endswith("_dot")]
     yield {"kind": "motion", "value": motion_json(solved_motion, velocity_names)}
@@ -312,13 +271,8 @@ def _modes(task: Task, system: System) -> Iterator[Message]:
 
 
 def _numbers(task: Task) -> dict[str, Fraction]:
-    numbers = {}
-    for name, value in (task.get("set") or {}).items():
-        try:
-            numbers[str(name)] = Fraction(str(value))
-        except (ValueError, ZeroDivisionError) as error:
-            raise Refused(f"{name}: a rational number is wanted, as 2/5 or 0.4") from error
-    return numbers
+    values = task.get("set") or {}
+    return {name: _rational(x, f"{name}: a rational number is wanted, as 2/5 or 0.4") for name, x in values.items()}
 
 
 # --- maps -------------------------------------------------------------------------------------------------------------
@@ -336,14 +290,11 @@ def _map(task: Task, system: System) -> Iterator[Message]:
     for key in ("x", "y"):
         if not task.get(key):
             continue
-        name, ends = str(task[key].get("name", "")), []
+        name = str(task[key].get("name", ""))
         if name not in usable(system):
             raise Refused(f"there is no parameter called {name}")
-        for end in ("low", "high"):
-            try:
-                ends.append(Fraction(str(task[key].get(end, ""))))
-            except (ValueError, ZeroDivisionError) as error:
-                raise Refused(f"{name}: the ends of its range are rational numbers, as 2/5 or 0.4") from error
+        refusal = f"{name}: the ends of its range are rational numbers, as 2/5 or 0.4"
+        ends = [_rational(task[key].get(end, ""), refusal) for end in ("low", "high")]
         if ends[0] >= ends[1]:
             raise Refused(f"{name}: the range from {ends[0]} to {ends[1]} is empty")
         axes.append(Axis(name, *ends))

@@ -1,4 +1,4 @@
-"""How far the flow on a slow manifold is from the motion itself: measured, at the given eps and at parts of it.
+"""How far the flow on a slow manifold, or an averaged motion, is from the motion itself: at eps and at parts of it.
 
 The motion of all equations (a tight simulation, from the bodies) starts on the manifold, z(0) = h(s(0), eps); the flow
 s' = f(s, eps), cut off after the order of the expansion, starts at the same s(0).  Their largest distance over a fixed
@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import log, sqrt
+from math import log, pi, sqrt
 from typing import Any
 
 import numpy as np
 from flint import fmpq
 
 from mbsym.algebra import rationals
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.quotients import Series
 from mbsym.analysis.expanding import Expansion
 from mbsym.expressions.tree import Expression, number
@@ -24,6 +25,7 @@ from mbsym.model.system import System, velocity_name
 from mbsym.numerics.closing import closed
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.states import scenario_in_states
+from mbsym.problems.small_parameter.averaging import Averaged
 from mbsym.simulation.request import Request
 from mbsym.simulation.run import simulate
 
@@ -226,3 +228,67 @@ def _reduced(flow: Flow, s: Floats, time: float) -> Floats:
     if not done.success or not np.isfinite(done.y).all():
         raise NotMeasured("the flow on the manifold ends early")
     return np.asarray(done.y)
+
+
+# How far the averaged motion is from the motion itself: average_measured, at the given eps and at parts of it.
+
+
+#: Rows in which the two motions are compared.
+ROWS_OF_AVERAGES = 400
+#: Periods of the slowest of the fast phases, at the given numbers, that are simulated unless a time is asked for.
+PERIODS = 60
+#: Distances that the errors of the integrations may make up.
+NOISE = 1e-6
+
+
+def average_measured(
+    system: System,
+    averaged: System,
+    average: Averaged,
+    time: float | None = None,
+    watch: Callable[[str], None] = lambda what: None,
+) -> Measured:
+    """Both motions from the initial state of the description, over ``time``: the largest |q - Q| beside that of |Q|.
+
+    Raises Incomplete where numbers are missing, NoClosedForm where a motion does not last, or both are the same.
+    """
+    base = scenario(system)
+    values = dict(base.parameters)
+    rate = min(abs(float(values[rate_name])) for rate_name in average.rates)
+    time = PERIODS * 2 * pi / rate if time is None else time
+    distances = []
+    for part in PARTS:
+        watch(f"eps/{part.denominator}" if part != 1 else "eps")
+        scaled: dict[str, Expression] = {
+            name: number(Fraction(values[name]) * part**power) for name, power in average.orders
+        }
+        scaled |= {rate_name: number(Fraction(values[rate_name]) / part) for rate_name in average.rates}
+        own = scenario(system, scaled)
+        request = Request(time=time, samples=ROWS_OF_AVERAGES, estimate=False)
+        exact = simulate(own, request)
+        start = _start(own, average)
+        slow = simulate(
+            scenario(averaged, {**scaled, **start}), Request(time=time, samples=ROWS_OF_AVERAGES, estimate=False)
+        )
+        q, Q = np.asarray(exact.coordinates), np.asarray(slow.coordinates)
+        if q.shape != Q.shape or not (np.isfinite(q).all() and np.isfinite(Q).all()):
+            raise NoClosedForm("one of the motions ends before that time")
+        size = np.abs(Q).max(axis=1, keepdims=True)
+        size[size == 0] = 1.0
+        distances.append(float(np.abs((q - Q) / size).max()))
+    if max(distances) < NOISE:
+        raise NoClosedForm("from this initial state both motions are the same, which tells nothing of others")
+    return Measured(time, PARTS, tuple(distances))
+
+
+def _start(own: Scenario, average: Averaged) -> Mapping[str, Expression]:
+    """Q' = q' + M^-1 a at the beginning: the same momenta."""
+    values: dict[str, Any] = {name: rationals.ball(x) for name, x in own.parameters.items()}
+    places = dict(zip(own.system.coordinates, own.positions, strict=True))
+    places |= {name: initial for name, (initial, _) in own.prescribed.items()}
+    values |= {name: rationals.ball(x) for name, x in places.items()}
+    start = {}
+    for name, velocity, swing in zip(own.system.coordinates, own.velocities, average.swings, strict=True):
+        shift = float(swing.ring.evaluate(swing.polynomial, values).mid())
+        start[velocity_name(name)] = number(velocity + Fraction(shift))
+    return start

@@ -19,7 +19,6 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.tower import Element, angle_in
 from mbsym.analysis.oscillating import Oscillating
-from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario, exact, scenario
@@ -145,6 +144,8 @@ def symbol_values(
     Raises NoClosedForm where an amplitude is needed, not ``put`` in, and zero.
     """
     oscillation = solution.oscillation
+    if len(oscillation.phases) > 1:
+        raise NoClosedForm("a motion with several phases is not compared with runs")
     if base.system.speeds:
         seen = scenario_in_states(base)
         state = dict(zip((*seen.system.coordinates, *seen.system.velocities), seen.state, strict=True))
@@ -158,7 +159,7 @@ def symbol_values(
     needed = oscillation.kind is Amplitude.FREE and solution.symbols.get(AMPLITUDE) not in put
     if needed and values[AMPLITUDE] == 0:
         text = "[[name]] begins at zero: the initial state gives no amplitude"
-        raise NoClosedForm(Message(text, name=oscillation.leading))
+        raise NoClosedForm(text, name=oscillation.leading)
     return values
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -65,8 +66,9 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
     slips: set[str] = set()
     for draft in drafts:
         _declare_inferred(draft, slips, reading)
+    constant = _constant(drafts) if reading.scope.by_use is not None else set()
     for draft in drafts:
-        _assume_forgotten(draft, reading)
+        _assume_forgotten(draft, constant, reading)
     return drafts
 
 
@@ -131,9 +133,9 @@ def _declare_inferred(draft: Draft, slips: set[str], reading: Reading) -> None:
                 slips.add(name)
                 message = Message("the undeclared angle '[[name]]' becomes a coordinate of its own", name=name)
                 hint = Message(
-                    "did you mean '[[other]]'? If not, add 'coordinates: [[[name]]]' to this body",
+                    "did you mean '[[other]]'? If not, add '[[coordinates]]' to this body",
                     other=slip,
-                    name=name,
+                    coordinates=_listed_coordinates(name, draft),
                 )
                 reading.complaints.warning("resembling-name", message, item.span, hint)
             reading.scope.declare(name, "coordinate", item.span)
@@ -149,16 +151,34 @@ def _angles(draft: Draft) -> tuple[Node, ...]:
     return ()
 
 
-def _assume_forgotten(draft: Draft, reading: Reading) -> None:
-    """Undeclared names that place a body are most likely coordinates that nobody listed: said once, then read so."""
+def _constant(drafts: list[Draft]) -> set[str]:
+    """The names in masses, mass centres and inertias, where no coordinate may stand."""
+    nodes = [draft.fields.get(key) for draft in drafts for key in ("mass", "mass centre", "inertia")]
+    return {symbol.name for node in nodes for symbol in _names(node)}
+
+
+def _names(node: Node | None) -> Iterator[Name]:
+    """The names in a formula, or in all those of a list."""
+    for item in node.items if isinstance(node, Sequence) else ():
+        yield from _names(item)
+    tree = parse_expression(node.text, Complaints(), node.place) if isinstance(node, Scalar) else None
+    for symbol in walk(tree) if tree is not None else ():
+        if isinstance(symbol, Name):
+            yield symbol
+
+
+def _assume_forgotten(draft: Draft, constant: Collection[str], reading: Reading) -> None:
+    """Undeclared names that place a body are most likely coordinates that nobody listed: said once, then read so.
+
+    Not those that are ``constant``.
+    """
     listed, scope = draft.fields.get("coordinates"), reading.scope
     if scope.by_use is not None and isinstance(listed, Sequence):
         return  # what is not in the list is a parameter by its use
     point = draft.fields.get("connection point")
     for node in (*_angles(draft), *(point.items if isinstance(point, Sequence) else ())):
-        tree = parse_expression(node.text, Complaints(), node.place) if isinstance(node, Scalar) else None
-        for symbol in walk(tree) if tree is not None else ():
-            if not isinstance(symbol, Name) or symbol.name in (*CONSTANTS, *scope.assumed) or why_no_name(symbol.name):
+        for symbol in _names(node):
+            if symbol.name in (*CONSTANTS, *scope.assumed, *constant) or why_no_name(symbol.name):
                 continue
             close = did_you_mean(symbol.name, scope.of_kind(*RADIUS.kinds))
             if scope.kind_of(symbol.name) is not None or (close and isinstance(listed, Sequence)):
@@ -177,16 +197,16 @@ def _assume_forgotten(draft: Draft, reading: Reading) -> None:
 
 def _coordinate_hint(name: Name, draft: Draft, close: str | None) -> str:
     together = ", ".join([*(scalar.text for scalar in draft.coordinates), name.name])
-    verb = "write" if draft.fields.get("coordinates") is not None else "add"
-    text = (
-        "write 'coordinates: [[[names]]]' in this body"
-        if verb == "write"
-        else "add 'coordinates: [[[names]]]' to this body"
-    )
-    way = Message(text, names=together)
+    is_there = draft.fields.get("coordinates") is not None
+    text = "write '[[coordinates]]' in this body" if is_there else "add '[[coordinates]]' to this body"
+    way = Message(text, coordinates=_listed_coordinates(together, draft))
     if close:
         return Message("[[other]] If it is a coordinate of its own, [[listed]]", other=close, listed=way)
     return Message("if it is a coordinate, [[listed]]; if it is a parameter, declare it under 'parameters'", listed=way)
+
+
+def _listed_coordinates(names: str, draft: Draft) -> str:
+    return f"Generalized coordinates: {names}" if draft.fields.reading.labelled else f"coordinates: [{names}]"
 
 
 def _bare_name(node: Node) -> str | None:
@@ -293,8 +313,10 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     axes_node, angles_node = fields.require("axes"), fields.require("angles")
     if axes_node is None or angles_node is None:
         return Rotation()
-    axes = [_axis(item, reading) for item in reading.lone_or_items(axes_node, "'axes'")]
-    angle_items = reading.lone_or_items(angles_node, "'angles'")
+    errors = reading.errors
+    axis_items, angle_items = reading.lone_or_items(axes_node, "'axes'"), reading.lone_or_items(angles_node, "'angles'")
+    listed = reading.errors == errors
+    axes = [_axis(item, reading) for item in axis_items]
     angles = [reading.expression(item, ANGLE) for item in angle_items]
     if len(axes) > 3:
         reading.error("wrong-shape", "a joint has at most three rotation axes", axes_node.span, "add a massless body")
@@ -302,7 +324,8 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
         message = Message(
             "each axis has its angle: [[axes]] wanted, not [[angles]]", axes=len(axes), angles=len(angles)
         )
-        reading.error("wrong-shape", message, angles_node.span, comma_hint(angle_items, len(axes)))
+        if listed:
+            reading.error("wrong-shape", message, angles_node.span, comma_hint(angle_items, len(axes)))
         return Rotation()
     for axis, angle, item in zip(axes, angles, angle_items, strict=True):
         if axis == 0 and not is_number(angle, 0):

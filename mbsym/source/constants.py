@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import replace
 from fractions import Fraction
 
 from mbsym.expressions.constants import sign_of
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
@@ -41,8 +42,17 @@ def declared_by_use(reading: Reading) -> list[Parameter]:
         return []
     message = Message("parameters are declared by their use, all of them real: [[used]]", used=", ".join(used))
     hint = "a section 'Parameters' gives them signs, values and meanings, and slips of the pen are found"
+    products = [factors for name in used if (factors := _factors(name, reading.scope.kinds))]
+    if products:
+        hint = joined([hint, Message("where a product is meant, write [[product]]", product=", ".join(products))], "; ")
     reading.complaints.warning("declared-by-use", message, min(used.values(), key=lambda span: span.line), hint)
     return [Parameter(name, span=span) for name, span in used.items()]
+
+
+def _factors(name: str, known: Collection[str]) -> str:
+    """``m*l`` for ml, where m and l are names, too; "" for other names."""
+    cuts = ((name[:end], name[end:]) for end in range(1, len(name)))
+    return next((f"{first}*{second}" for first, second in cuts if first in known and second in known), "")
 
 
 def _listed(node: Sequence, reading: Reading) -> list[Parameter]:

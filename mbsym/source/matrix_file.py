@@ -31,11 +31,11 @@ _BESIDE = "a file of a matrix stands beside the description, or in a folder belo
 
 
 class Unreadable(Exception):
-    """Why there is no matrix, and what to do about it."""
+    """Why there is no matrix, a message with its gaps, and what to do about it."""
 
-    def __init__(self, message: str, hint: str | None = None) -> None:
-        super().__init__(message)
-        self.message, self.hint = message, hint
+    def __init__(self, message: str, remedy: str = "", **gaps: object) -> None:
+        self.message, self.hint = Message(message, **gaps), remedy or None
+        super().__init__(self.message)
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,7 @@ def read_matrix(folder: Path | None, file: str, most: int) -> Read:
         rows = _from_market(data, file, most)
     else:
         raise Unreadable(
-            Message("[[file]] is no file of a matrix", file=_plain(file)),
-            "MatrixMarket (.mtx) and NumPy (.npy) are read",
+            "[[file]] is no file of a matrix", file=_plain(file), remedy="MatrixMarket (.mtx) and NumPy (.npy) are read"
         )
     return Read(rows, hashlib.sha256(data).hexdigest())
 
@@ -70,39 +69,38 @@ def _plain(file: str) -> str:
 def _bytes(folder: Path | None, file: str) -> bytes:
     if folder is None:
         hint = "give mbsym this description as a file of its own, or write the matrix into it"
-        raise Unreadable("files beside a description are read with it only: not in a batch, nor beside a text", hint)
+        raise Unreadable(
+            "files beside a description are read with it only: not in a batch, nor beside a text", remedy=hint
+        )
     relative = PurePosixPath(file)
     if relative.is_absolute() or ".." in relative.parts or "\\" in file or ":" in file:
-        raise Unreadable(_BESIDE, "as in data/K.mtx")
+        raise Unreadable(_BESIDE, remedy="as in data/K.mtx")
     try:
         path = (folder / relative).resolve()
         if not path.is_relative_to(folder.resolve()):
             raise Unreadable(_BESIDE)
         if not path.is_file():
-            raise Unreadable(Message("there is no file [[file]] beside the description", file=_plain(file)))
+            raise Unreadable("there is no file [[file]] beside the description", file=_plain(file))
         with path.open("rb") as opened:
             data = opened.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise Unreadable(Message("[[file]] cannot be read: [[reason]]", file=_plain(file), reason=reason)) from error
+        raise Unreadable("[[file]] cannot be read: [[reason]]", file=_plain(file), reason=reason) from error
     if len(data) > MOST_BYTES:
         raise Unreadable(
-            Message("[[file]] has more than [[most]] bytes", file=_plain(file), most=MOST_BYTES),
-            "reduce the model before",
+            "[[file]] has more than [[most]] bytes",
+            file=_plain(file),
+            most=MOST_BYTES,
+            remedy="reduce the model before",
         )
     return data
 
 
 def _sized(rows: int, columns: int, file: str, most: int) -> None:
     if not (1 <= rows <= most and 1 <= columns <= most):
-        message = Message(
-            "[[file]] holds a matrix of [[rows]] x [[columns]], and 1 to [[most]] rows and columns are read",
-            file=_plain(file),
-            rows=rows,
-            columns=columns,
-            most=most,
-        )
-        raise Unreadable(message, "reduce the model before" if max(rows, columns) > most else None)
+        text = "[[file]] holds a matrix of [[rows]] x [[columns]], and 1 to [[most]] rows and columns are read"
+        hint = "reduce the model before" if max(rows, columns) > most else ""
+        raise Unreadable(text, file=_plain(file), rows=rows, columns=columns, most=most, remedy=hint)
 
 
 # --- MatrixMarket ---
@@ -113,46 +111,44 @@ def _from_market(data: bytes, file: str, most: int) -> Numbers:
     try:
         lines = data.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
-        raise Unreadable(Message("[[name]] is no UTF-8 text", name=name)) from error
+        raise Unreadable("[[name]] is no UTF-8 text", name=name) from error
     head = lines[0].lower().split() if lines else []
     if len(head) != 5 or head[:2] != ["%%matrixmarket", "matrix"]:
         raise Unreadable(
-            Message("[[name]]:1: no MatrixMarket header", name=name), "%%MatrixMarket matrix array real general"
+            "[[name]]:1: no MatrixMarket header", name=name, remedy="%%MatrixMarket matrix array real general"
         )
     layout, kind, symmetry = head[2:]
     known = {"array", "coordinate"}, {"real", "integer"}, {"general", "symmetric", "skew-symmetric"}
     for word, words in zip((layout, kind, symmetry), known, strict=True):
         if word not in words:
             raise Unreadable(
-                Message("[[name]]:1: [[word]] is not read", name=name, word=ascii_safe(word)),
-                Message("one of: [[words]]", words=", ".join(sorted(words))),
+                "[[name]]:1: [[word]] is not read",
+                name=name,
+                word=ascii_safe(word),
+                remedy=Message("one of: [[words]]", words=", ".join(sorted(words))),
             )
     body = [(number, line.split()) for number, line in enumerate(lines, 1) if line.strip() and line[0] != "%"]
     if not body:
-        raise Unreadable(Message("[[name]] has no line of sizes", name=name))
+        raise Unreadable("[[name]] has no line of sizes", name=name)
     place, sizes = body[0]
     size_count = 2 if layout == "array" else 3
     if len(sizes) != size_count or not all(map(_WHOLE.match, sizes)):
         raise Unreadable(
-            Message(
-                "[[name]]:[[place]]: the line of sizes holds [[wanted]] whole numbers",
-                name=name,
-                place=place,
-                wanted=size_count,
-            )
+            "[[name]]:[[place]]: the line of sizes holds [[wanted]] whole numbers",
+            name=name,
+            place=place,
+            wanted=size_count,
         )
     rows, columns = int(sizes[0]), int(sizes[1])
     _sized(rows, columns, file, most)
     if symmetry != "general" and rows != columns:
         raise Unreadable(
-            Message(
-                "[[name]]:[[place]]: a [[symmetry]] matrix is square, not [[rows]] x [[columns]]",
-                name=name,
-                place=place,
-                symmetry=symmetry,
-                rows=rows,
-                columns=columns,
-            )
+            "[[name]]:[[place]]: a [[symmetry]] matrix is square, not [[rows]] x [[columns]]",
+            name=name,
+            place=place,
+            symmetry=symmetry,
+            rows=rows,
+            columns=columns,
         )
     matrix = [[Fraction(0)] * columns for _ in range(rows)]
     if layout == "array":
@@ -163,22 +159,14 @@ def _from_market(data: bytes, file: str, most: int) -> Numbers:
     for number, i, j, value in entries:
         if (i, j) in seen or (symmetry != "general" and (j, i) in seen):
             raise Unreadable(
-                Message(
-                    "[[name]]:[[number]]: the entry [[i]], [[j]] is given twice",
-                    name=name,
-                    number=number,
-                    i=i + 1,
-                    j=j + 1,
-                )
+                "[[name]]:[[number]]: the entry [[i]], [[j]] is given twice", name=name, number=number, i=i + 1, j=j + 1
             )
         seen.add((i, j))
         matrix[i][j] = value
         if symmetry != "general" and i != j:
             matrix[j][i] = value if symmetry == "symmetric" else -value
         if symmetry == "skew-symmetric" and i == j and value:
-            raise Unreadable(
-                Message("[[name]]:[[number]]: the diagonal of a skew matrix is zero", name=name, number=number)
-            )
+            raise Unreadable("[[name]]:[[number]]: the diagonal of a skew matrix is zero", name=name, number=number)
     return tuple(map(tuple, matrix))
 
 
@@ -192,12 +180,10 @@ def _listed(body: list[tuple[int, list[str]]], name: str, symmetry: str, rows: i
     values = [(number, cell) for number, cells in body for cell in cells]
     if len(values) != len(places):
         raise Unreadable(
-            Message(
-                "[[name]] holds [[values]] entries, and [[places]] are announced",
-                name=name,
-                values=len(values),
-                places=len(places),
-            )
+            "[[name]] holds [[values]] entries, and [[places]] are announced",
+            name=name,
+            values=len(values),
+            places=len(places),
         )
     return [(number, i, j, _number(cell, name, number)) for (number, cell), (i, j) in zip(values, places, strict=True)]
 
@@ -205,28 +191,22 @@ def _listed(body: list[tuple[int, list[str]]], name: str, symmetry: str, rows: i
 def _placed(body: list[tuple[int, list[str]]], count: int, name: str, rows: int, columns: int) -> _Entries:
     if len(body) != count:
         raise Unreadable(
-            Message(
-                "[[name]] holds [[body]] entries, and [[count]] are announced", name=name, body=len(body), count=count
-            )
+            "[[name]] holds [[body]] entries, and [[count]] are announced", name=name, body=len(body), count=count
         )
     entries = []
     for number, cells in body:
         if len(cells) != 3 or not _WHOLE.match(cells[0]) or not _WHOLE.match(cells[1]):
-            raise Unreadable(
-                Message("[[name]]:[[number]]: an entry is a row, a column and a value", name=name, number=number)
-            )
+            raise Unreadable("[[name]]:[[number]]: an entry is a row, a column and a value", name=name, number=number)
         i, j = int(cells[0]), int(cells[1])
         if not (1 <= i <= rows and 1 <= j <= columns):
             raise Unreadable(
-                Message(
-                    "[[name]]:[[number]]: there is no entry [[i]], [[j]] in a matrix of [[rows]] x [[columns]]",
-                    name=name,
-                    number=number,
-                    i=i,
-                    j=j,
-                    rows=rows,
-                    columns=columns,
-                )
+                "[[name]]:[[number]]: there is no entry [[i]], [[j]] in a matrix of [[rows]] x [[columns]]",
+                name=name,
+                number=number,
+                i=i,
+                j=j,
+                rows=rows,
+                columns=columns,
             )
         entries.append((number, i - 1, j - 1, _number(cells[2], name, number)))
     return entries
@@ -234,9 +214,9 @@ def _placed(body: list[tuple[int, list[str]]], count: int, name: str, rows: int,
 
 def _number(cell: str, name: str, line: int) -> Fraction:
     if not _NUMBER.match(cell):
-        hint = "numbers have a decimal point" if "," in cell else None
+        hint = "numbers have a decimal point" if "," in cell else ""
         raise Unreadable(
-            Message("[[name]]:[[line]]: [[cell]] is no number", name=name, line=line, cell=ascii_safe(cell[:40])), hint
+            "[[name]]:[[line]]: [[cell]] is no number", name=name, line=line, cell=ascii_safe(cell[:40]), remedy=hint
         )
     return Fraction(re.sub("[dD]", "e", cell))
 
@@ -253,32 +233,32 @@ def _from_numpy(data: bytes, file: str, most: int) -> Numbers:
         version = npy.read_magic(opened)
         if version not in ((1, 0), (2, 0)):
             raise Unreadable(
-                Message(
-                    "[[name]] has version [[major]].[[minor]] of the format, and 1.0 and 2.0 are read",
-                    name=name,
-                    major=version[0],
-                    minor=version[1],
-                )
+                "[[name]] has version [[major]].[[minor]] of the format, and 1.0 and 2.0 are read",
+                name=name,
+                major=version[0],
+                minor=version[1],
             )
         head = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
         shape, by_columns, kind = head(opened)
     except Unreadable:
         raise
     except Exception as error:
-        raise Unreadable(Message("[[name]] is no NumPy file", name=name), "save it with numpy.save") from error
+        raise Unreadable("[[name]] is no NumPy file", name=name, remedy="save it with numpy.save") from error
     if kind.hasobject or kind.kind not in "fiu" or kind.itemsize > 8:
         raise Unreadable(
-            Message("[[name]] holds [[kind]], and real numbers of up to 8 bytes are read", name=name, kind=kind),
-            "save it as float64",
+            "[[name]] holds [[kind]], and real numbers of up to 8 bytes are read",
+            name=name,
+            kind=kind,
+            remedy="save it as float64",
         )
     if len(shape) != 2:
         raise Unreadable(
-            Message("[[name]] holds an array of [[count]] dimensions, and a matrix has 2", name=name, count=len(shape))
+            "[[name]] holds an array of [[count]] dimensions, and a matrix has 2", name=name, count=len(shape)
         )
     rows, columns = shape
     _sized(rows, columns, file, most)
     if len(data) - opened.tell() != rows * columns * kind.itemsize:
-        raise Unreadable(Message("[[name]] is not as long as its header says", name=name))
+        raise Unreadable("[[name]] is not as long as its header says", name=name)
     return _exact(data[opened.tell() :], kind, shape, by_columns, name)
 
 
@@ -290,8 +270,6 @@ def _exact(data: bytes, kind: Any, shape: tuple[int, int], by_columns: bool, nam
         for j, x in enumerate(row, 1):
             if not math.isfinite(x):
                 raise Unreadable(
-                    Message(
-                        "[[name]]: the entry [[i]], [[j]] is [[written]], no number", name=name, i=i, j=j, written=x
-                    )
+                    "[[name]]: the entry [[i]], [[j]] is [[written]], no number", name=name, i=i, j=j, written=x
                 )
     return tuple(tuple(Fraction(x) for x in row) for row in values)

@@ -19,8 +19,7 @@ from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span, in_line
 from mbsym.expressions.rates import ENDINGS, velocity_name
 from mbsym.expressions.tree import CONSTANTS, ONE, Expression, Name, names, substitute, walk
-from mbsym.model.reducing import Asked, Reducing
-from mbsym.model.scaling import Scaled, Scaling, Weights, factor_of
+from mbsym.model.scaling import Asked, Reducing, Scaled, Scaling, Weights, factor_of
 from mbsym.model.system import System
 from mbsym.source.scope import did_you_mean, listed, why_no_name
 from mbsym.source.units.system import Dimensions, Form, dimensions_of

@@ -26,23 +26,27 @@ def lines_of(text: str) -> Iterator[Scalar]:
             yield _in_latin(content)
 
 
-#: Greek letters, those of mathematical alphabets included, with the lowered digits behind them.
-_GREEK = re.compile("[\u0370-\u03ff\u1f00-\u1fff\U0001d6a8-\U0001d7cb][\u2080-\u2089]*")
+#: Signs as they are printed: minus, three of products, two powers.
+_SIGNS = {"\u2212": "-", "\u00d7": "*", "\u00b7": "*", "\u22c5": "*", "\u00b2": "**2", "\u00b3": "**3"}
+
+#: Those, lowered digits, and Greek letters (those of mathematical alphabets, too) with the lowered digits behind them.
+PRINTED = re.compile(
+    f"[{''.join(_SIGNS)}]|[\u2080-\u2089]+|[\u0370-\u03ff\u1f00-\u1fff\U0001d6a8-\U0001d7cb][\u2080-\u2089]*"
+)
 
 
 def _in_latin(line: Scalar) -> Scalar:
-    """Greek letters outside of quotes and meanings by their names, as names of descriptions are written: psi, omega0.
+    """Greek letters, lowered digits, printed signs as descriptions have them, outside of quotes and meanings: psi, -.
 
     Each letter of a name stands where the Greek one does.
     """
-    words = line.text.partition("meaning")[0]
     label, _ = label_of(line)
-    if _GREEK.search(words) is None or (label is not None and word_of(label.text) in FREE):
+    if PRINTED.search(line.text) is None or (label is not None and word_of(label.text) in FREE):
         return line
     text, columns, end = "", list[int](), 0
-    for match in re.finditer(rf'"(?:[^"\\]|\\.)*"|{_GREEK.pattern}', words):
-        named = in_latin(match[0])
-        name = named if named.isalnum() and not match[0].startswith('"') else match[0]  # some letters have none
+    for match in re.finditer(rf'"(?:[^"\\]|\\.)*"|meaning.*|{PRINTED.pattern}', line.text):
+        named = (_SIGNS.get(match[0]) or in_latin(match[0])) if PRINTED.match(match[0]) else ""
+        name = named if named.isalnum() or match[0] in _SIGNS else match[0]  # some letters have none
         text += line.text[end : match.start()] + name
         columns += range(end, match.start())
         one_by_one = len(name) == len(match[0])

@@ -13,7 +13,8 @@ from mbsym.expressions.tree import SMOOTH
 from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
 from mbsym.source.examples import example_names, example_text
 from mbsym.source.grammar import Ends, Flag, Key, Kind, Named, Record, Type, plain
-from mbsym.source.keys import CLAIM, CONSTRAINTS, DESCRIPTION, LOADS
+from mbsym.source.keys import CLAIM, CONSTRAINTS, DESCRIPTION, LOADS, SYSTEM
+from mbsym.source.labels import BODY, HEADER, SECTIONS
 
 WIDTH = 110
 
@@ -31,6 +32,16 @@ def loads() -> str:
 def constraints() -> str:
     """Every kind of constraint with its keys."""
     return _kinds("constraint", CONSTRAINTS)
+
+
+def plain_text() -> str:
+    """The labels of the description editor's text, which the paper's Figure 3 prints, and the keys they stand for."""
+    width = max(map(len, _LABELS))
+    parts = [_PLAIN_TEXT]
+    for title, labels in _LABELLED.items():
+        lines = [f"    {label.capitalize():<{width}}  {key}" for label, key in labels.items()]
+        parts.append("\n".join([title, "", *lines]))
+    return "\n\n".join(parts)
 
 
 def _kinds(what: str, kinds: Mapping[str, Kind]) -> str:
@@ -66,6 +77,15 @@ def ends(kinds: Mapping[str, Kind]) -> list[Record]:
 def keys_of(record: Record) -> dict[str, Key]:
     """Its keys, but for words that are short for another one (``positive: true``), which that one tells."""
     return {name: key for name, key in record.keys.items() if not (isinstance(key.type, Flag) and not key.type.false)}
+
+
+#: The labels of the editor's text, and the keys they stand for.
+_LABELLED = {
+    "Of the system:": {label: key for label, key in HEADER.items() if key in SYSTEM},
+    "Sections of lines 'name = value':": {label: name for label, (name, _) in SECTIONS.items()},
+    "Of a body, below 'Body description (1)':": BODY,
+}
+_LABELS = {label: key for labels in _LABELLED.values() for label, key in labels.items()}
 
 
 def _titled(record: Record) -> str:
@@ -111,7 +131,11 @@ def _listed(table: Mapping[str, Key]) -> str:
 
 
 def meanings(word: str) -> list[str]:
-    """What a word means as a key of a description, or a kind of load, constraint or claim; none for other words."""
+    """What a word means as a key of a description, its label in the editor's text, or a kind of load, constraint or
+    claim; none for other words.
+    """
+    if word.lower() in _LABELS and _LABELS[word.lower()] != word:
+        return meanings(_LABELS[word.lower()])
     named = [(record.title, record.keys) for record in records(DESCRIPTION)]
     named += [("A claim", CLAIM)]
     paragraphs = [f"{title}\n\n{_listed({word: keys[word]})}" for title, keys in named if word in keys]
@@ -139,10 +163,25 @@ def _shipped(what: str, kind: str) -> str:
 
 def words() -> list[str]:
     """Every word that ``meanings`` knows."""
-    tables: list[Iterable[str]] = [*(record.keys for record in records(DESCRIPTION)), CLAIM, LOADS, CONSTRAINTS, CLAIMS]
+    tables: list[Iterable[str]] = [
+        *(record.keys for record in records(DESCRIPTION)),
+        CLAIM,
+        LOADS,
+        CONSTRAINTS,
+        CLAIMS,
+        _LABELS,
+    ]
     tables += [kind.keys for kinds in (LOADS, CONSTRAINTS) for kind in kinds.values()]
     return list(dict.fromkeys(word for table in tables for word in table))
 
+
+_PLAIN_TEXT = """\
+A description in the plain text of the description editor, as the paper's Figure 3 has it
+
+mbsym convert FILE.yaml --out FILE.txt writes a description so, and reads it.  A label is followed by a colon, nothing,
+or its value in the next line; vectors stand in brackets or not, Greek letters and signs as they are printed.  Loads,
+constraints and claims follow in blocks 'Load description (1)', with 'Type of load:' and their keys.  Without a section
+'Parameters' names declare themselves.  Labels, and the keys that mbsym explain tells of:"""
 
 _SEE = (
     "Kinds of load: mbsym explain loads.  Of constraint: mbsym explain constraints.  Formulas: mbsym explain "

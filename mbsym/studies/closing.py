@@ -19,23 +19,28 @@ MOST_GAPS = 8
 def closed_motion(scenario: Scenario, declared: bool = False) -> tuple[Scenario, tuple[str, ...]]:
     """The scenario on its constraints, in ``declared`` variables if it has any and they are integrated; what is said.
 
-    Raises NotClosed.
+    Raises NotClosed, NothingMoves.
     """
-    from mbsym.numerics.closing import begun, closed
+    from mbsym.numerics.closing import begun, closed, moving
     from mbsym.report.runs.constrained_run_words import start_lines
 
-    closure = begun(scenario) if declared else closed(scenario)
+    closure = moving(begun(scenario) if declared else closed(scenario))
     say = Language(scenario.system.language).say
     notes = (Message("note: [[text]]", text=text) for text in start_lines(closure, scenario.system))
     return closure.scenario, tuple(map(say, notes)) if closure.moves else ()
 
 
 def not_closed(error: Exception, system: System) -> Refusal | None:
-    """Which state comes closest, and its gaps; None of other errors."""
+    """Which state comes closest, and its gaps, or that the constraints hold what closed; None of other errors."""
     from mbsym.model.quantities import unit_of, with_unit
-    from mbsym.numerics.closing import NotClosed
+    from mbsym.numerics.closing import NotClosed, NothingMoves
     from mbsym.report.unit_text import pretty
 
+    say = Language(system.language).say
+    if isinstance(error, NothingMoves):
+        hint = say(Message("hint: [[hint]]", hint=error.remedy))
+        told = (f"  {hint}", say(Message("nothing was written.")))
+        return Refusal(f"error[{error.code}]: {say(error.reason)}", Exit.BROKEN_DOWN, told)
     if not isinstance(error, NotClosed):
         return None
     names = (*system.coordinates, *system.velocities)
@@ -58,6 +63,6 @@ def not_closed(error: Exception, system: System) -> Refusal | None:
     else:
         hint = Message("check lengths and the initial position; a start nearer to a closed one may succeed")
     lines.append(Message("hint: [[hint]]", hint=hint))
-    code, say = Exit.BAD_INPUT if error.fixed else Exit.BROKEN_DOWN, Language(system.language).say
+    code = Exit.BAD_INPUT if error.fixed else Exit.BROKEN_DOWN
     printed = [f"  {say(line)}" for line in lines]
     return Refusal(f"error[{error.code}]: {say(error.reason)}", code, (*printed, say(Message("nothing was written."))))

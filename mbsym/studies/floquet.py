@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.message import Message
 from mbsym.studies.described import public
 from mbsym.studies.request import Stateless
 from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Watch, no_program, refused
@@ -54,9 +53,9 @@ def floquet(context: Asked, request: Request, watch: Watch) -> Judged:
 
 def answer(context: Asked, request: Request, judged: Judged) -> Answer:
     from mbsym.report.content import facts
-    from mbsym.report.runs.floquet_files import floquet_json, sentences
+    from mbsym.report.runs.orbit_files import floquet_json, floquet_sentences
 
-    return Answer([facts(sentences(judged))], {"floquet.json": floquet_json(context.system, judged)})
+    return Answer([facts(floquet_sentences(judged))], {"floquet.json": floquet_json(context.system, judged)})
 
 
 def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
@@ -69,7 +68,7 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
             "its coefficients are constant at these values: with 'relations: {[[zeros]]}' in place of these values "
             "problem 6 judges it (mbsym run)"
         )
-        error = NotPeriodic(Message(text, zeros=", ".join(f"{name}: 0" for name in zeros)))
+        error = NotPeriodic(text, zeros=", ".join(f"{name}: 0" for name in zeros))
     if isinstance(error, NotPeriodic):
         return refused("there is no periodic first approximation to judge", error)
     return no_program(error, context, request)

@@ -96,12 +96,12 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 def answer(context: Asked, request: Request, exponents: Exponents) -> Answer:
     from mbsym.report.content import facts
-    from mbsym.report.runs.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
+    from mbsym.report.runs.orbit_files import lyapunov_csv, lyapunov_figure, lyapunov_json, lyapunov_sentences
 
     files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(exponents)}
     files |= lyapunov_figure(context.system, exponents, ("svg", "png")) if len(exponents.times) > 1 else {}
     files["lyapunov.json"] = lyapunov_json(context.system, exponents)
-    lines, notes = [facts(sentences(exponents))], closed_motion(context.motion)[1]
+    lines, notes = [facts(lyapunov_sentences(exponents))], closed_motion(context.motion)[1]
     if exponents.ended is None:
         return Answer(lines, files, notes)
     code = Exit.INTERRUPTED if exponents.ended.kind == "interrupted" else Exit.BROKEN_DOWN

@@ -35,7 +35,7 @@ def symbols(system: System) -> tuple[str, ...]:
     from mbsym.model.oscillation_names import AMPLITUDE
 
     variables = (*system.coordinates, *system.velocities, *system.variables)
-    return (AMPLITUDE, *(f"{name}_0" for name in variables))
+    return (AMPLITUDE, *(f"{name}_0" for name in variables), *(f"{AMPLITUDE}_{name}" for name in variables))
 
 
 @dataclass(frozen=True)
@@ -43,10 +43,11 @@ class Request:
     """Find periodic motions of FILE near those of its linear part, in powers of a small parameter, exactly.
 
     The method of Poincare and Lindstedt: frequencies are corrected so that no secular terms remain; where that is
-    possible for some amplitudes only, or not at all, that is told.  FILE names the small parameter ('small parameter:
-    eps', or powers of it in parameters and variables); without it, the deviations from the unperturbed motion are
-    small, of order eps.  Coefficients hold the parameters, the amplitude and the values that stay constant without
-    eps; resonances that were divided by are listed, and what is left out.
+    possible for some amplitudes only, or not at all, that is told.  --of names the variable that leads; of several, as
+    in --of p,gamma1, each leads a frequency of its own, and the motion has as many phases.  FILE names the small
+    parameter ('small parameter: eps', or powers of it in parameters and variables); without it, the deviations from the
+    unperturbed motion are small, of order eps.  Coefficients hold the parameters, the amplitude and the values that
+    stay constant without eps; resonances that were divided by are listed, and what is left out.
 
     With --integral formulas in variables are integrated over the time, too: angles that the equations do not need, from
     their rates.  Under the name of a coordinate its rate is checked.
@@ -65,6 +66,7 @@ class Request:
     Examples:
       mbsym oscillations systems/spring-pendulum.yaml --of theta
       mbsym oscillations systems/double-pendulum.yaml --of theta1 --frequency 2
+      mbsym oscillations systems/spring-pendulum.yaml --of theta,x
       mbsym oscillations systems/gyrostat-fast.yaml --order 2
       mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
       mbsym oscillations systems/gyrostat-fast.yaml --order 1 --scale "p=r_0*p1,q=r_0*q1,A=a*C,B=b*C,lx=y1*C*r_0"
@@ -74,7 +76,7 @@ class Request:
 
     _: KW_ONLY
     order: Annotated[int, Whole("N", "Up to this power.", "-n", most=8)] = 2
-    of: Annotated[str | None, Text("NAME", "The variable whose oscillation leads, where there are several.")] = None
+    of: Annotated[str | None, Text("NAMES", "The variable whose oscillation leads, or several: p,gamma1.")] = None
     frequency: Annotated[int, Whole("K", "Of several that it shares with others, the K-th.", most=99, shown=False)] = 1
     values: Annotated[
         Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set", more=symbols)
@@ -87,14 +89,18 @@ class Request:
     language: Annotated[str | None, language("Of figures")] = None
 
 
+def _leading(request: Request) -> tuple[str, ...]:
+    return tuple(map(str.strip, (request.of or "").split(","))) if request.of else ()
+
+
 def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     system = context.system
-    small, leading = system.small, request.of
+    small = system.small
     if small is None and (not system.motion or system.speeds):
         hint = "add 'small parameter: eps'"
         yield Unfit(DESCRIPTION, "missing-key", "the description names no small parameter", hint)
     known = (*system.coordinates, *system.velocities, *system.variables)
-    if leading and leading not in known:
+    for leading in (name for name in _leading(request) if name not in known):
         message = Message("there is no variable called [[name]]", name=repr(leading[:60]))
         yield Unfit("--of", "unknown-name", message, Message("there are [[names]]", names=", ".join(known)))
     for name in request.values:
@@ -185,7 +191,7 @@ def derive(context: Asked, request: Request, watch: Watch) -> Found:
 
     watch("oscillations")
     analysis = Analysis(context.system).in_free_coordinates
-    solution = oscillating(analysis, request.order, request.values, request.of or "", request.frequency)
+    solution = oscillating(analysis, request.order, request.values, _leading(request), request.frequency)
     watch("measuring")
     measured = orders_or_why(analysis.system, solution, request.values)
     if request.integral is not None:

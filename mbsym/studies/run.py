@@ -286,7 +286,7 @@ def _lines(context: Asked, request: Command, result: Run, files: Mapping[str, An
     if files:
         texts = ("[[file]]", "[[file]] (files there: [[count]])")
         if not request.verbose:
-            texts = ("[[file]] (all of it here: -v)", "[[file]] (files there: [[count]]; all of it here: -v)")
+            texts = ("[[file]] (-v tells all of it here)", "[[file]] (files there: [[count]]; -v tells all of it here)")
         place = safe(str(context.folder / (page if page == "report.html" else next(iter(files)))))
         told = say(texts[len(files) > 1], file=place, count=str(len(files)))
         yield from writer.document([Paragraph((told,))])

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.safe import UNBROKEN, safe
-from mbsym.model.reducing import Reducing
-from mbsym.model.scaling import Scaling
+from mbsym.model.scaling import Reducing, Scaling
 from mbsym.report.language import Language
 from mbsym.studies.request import Flag, Names, Parsed, Substitutions, Whole
 from mbsym.studies.study import Answer, Apart, Asked, Exit, NotFit, Refusal, Study, Unfit, Watch

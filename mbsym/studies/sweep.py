@@ -38,7 +38,8 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.sweeps.points import Measure, Points
+    from mbsym.numerics.ensembles.variation import Points
+    from mbsym.sweeps.points import Measure
     from mbsym.sweeps.sweep import Asked as Wanted
     from mbsym.sweeps.sweep import Chunk, Executor
     from mbsym.sweeps.sweep import Folder as Store
@@ -109,7 +110,7 @@ class Request:
 
     @property
     def wanted(self) -> Wanted:
-        from mbsym.sweeps.points import Points
+        from mbsym.numerics.ensembles.variation import Points
         from mbsym.sweeps.sweep import Asked
 
         points = Points(tuple(varied.variation for varied in self.vary), self.points or 0, self.seed, self.sampling)

@@ -22,8 +22,9 @@ from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Expression, number, text
 from mbsym.maps.section import Axis, Section, Unfit, section
 from mbsym.model.system import System
+from mbsym.numerics.ensembles.variation import Points
 from mbsym.numerics.scenario import scenario
-from mbsym.sweeps.points import Measure, Points
+from mbsym.sweeps.points import Measure
 
 # What a sweep is asked for, as plain data that another machine can read, and the measure that it means.
 
@@ -67,7 +68,7 @@ def measure_of(system: System, sweep_request: Asked) -> Measure:
     Raises Unfit (with all complaints) where the parameters fit no section, Failure where it cannot be derived.
     """
     if sweep_request.time is not None and sweep_request.formula is not None:
-        from mbsym.sweeps.simulated import SimulatedMeasure
+        from mbsym.sweeps.roots import SimulatedMeasure
 
         overrides = {name: number(value) for name, value in sweep_request.settings.items()}
         motion, said = scenario(system, overrides, assumed=False), text(sweep_request.formula)

@@ -24,9 +24,8 @@ import numpy as np
 
 import mbsym
 from mbsym.maps.section import Axis, section
-from mbsym.numerics.ensembles.variation import Grid
+from mbsym.numerics.ensembles.variation import Grid, Points
 from mbsym.sweeps.judged import RIGHT, StabilityMeasure
-from mbsym.sweeps.points import Points
 from mbsym.sweeps.roots import RootsMeasure
 from mbsym.sweeps.sweep import CHUNK, chunks
 

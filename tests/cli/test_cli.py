@@ -14,15 +14,18 @@ from click import Context
 from click.testing import CliRunner, Result
 
 from mbsym import load, loads
+from mbsym.algebra.certainty import Certainty
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
 from mbsym.problems.stability.words import MEANINGS, Word
 from mbsym.report.maps.frame import LOOKS
+from mbsym.report.maps.words import EVENTS
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
+from mbsym.source.labels import BODY as LABELS
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
-from mbsym_cli.explain import TOPICS, explanations, known_words
+from mbsym_cli.explain import TOPICS, _as_known, explanations, known_words
 from mbsym_cli.main import COMMANDS, SCREEN, main
 
 ROOT = Path(__file__).parents[2]
@@ -312,9 +315,28 @@ def test_explain_knows_what_conditions_are_called(name: str) -> None:
     assert {word for word in called if not re.fullmatch(r"[a-z][0-9]*", word)} <= set(known_words())
 
 
+def test_explain_knows_what_reports_say() -> None:
+    """How surely a thing is known, what happens to branches, and words as they stand: plural, numbered, capital."""
+    for word in (
+        *Certainty,
+        *EVENTS.values(),
+        "First integrals",
+        "minor 2 of K",
+        "lambda_2",
+        "Eigenvalues",
+        "linearisation",
+    ):
+        assert explanations(word) or explanations(_as_known(word)) or word.startswith(("degenerate", "infinitely")), (
+            word
+        )
+    assert explanations(_as_known("minor 2 of K")) == explanations("minor")
+    assert not explanations(_as_known("thing 2 of K"))
+
+
 @pytest.mark.parametrize("topic", TOPICS)
 def test_topics_name_everything_that_is_read(topic: str) -> None:
-    known = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "constraints": CONSTRAINTS}
+    labels = [label.capitalize() for label in LABELS]
+    known = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "constraints": CONSTRAINTS, "plain text": labels}
     wanted = {**known, "expressions": FUNCTIONS, "abbreviations": ["abbreviations:", "--in"], "claims": CLAIMS}[topic]
     done = mbsym("explain", topic)
     assert done.exit_code == 0

@@ -50,7 +50,7 @@ def test_an_ensemble_is_written_and_summed_up(tmp_path: Path) -> None:
     content = json.loads((tmp_path / "ensemble.json").read_text())
     Draft202012Validator(schema("ensemble")).validate(content)
     assert content["members"] == 27
-    assert sorted(content["files"]) == ["ensemble.csv", "fan.png", "fan.svg", "members.csv"]
+    assert sorted(content["files"]) == ["ensemble.csv", "fan.png", "members.csv"]
     spread, members = rows(tmp_path / "ensemble.csv"), rows(tmp_path / "members.csv")
     assert len(spread) == 11
     assert len(members) == 27

@@ -122,10 +122,10 @@ def test_frequencies_of_one_block_that_may_be_in_resonance_are_listed(tmp_path):
     path = tmp_path / "coupled.yaml"
     path.write_text(COUPLED, encoding="utf-8")
     told = " ".join(run(str(path), "--of", "x", "--order", "1").stdout.split())
-    assert "where 2*c = 0 (harmonic 1, order 1, of x_dot, y_dot, x, y)" in told
-    assert "where 2*(c - 4*k) = 0 (harmonic 3, order 1, of x_dot, y_dot, x, y)" in told
+    assert "where c = 0 (harmonic 1, order 1, of x_dot, y_dot, x, y)" in told
+    assert "where c - 4*k = 0 (harmonic 3, order 1, of x_dot, y_dot, x, y)" in told
     data = json.loads(run(str(path), "--of", "x", "--order", "1", "--json").stdout)
-    assert {(one["harmonic"], one["vanishes"]) for one in data["resonances"]} == {(1, "2*c"), (3, "2*(c - 4*k)")}
+    assert {(one["harmonic"], one["vanishes"]) for one in data["resonances"]} == {(1, "c"), (3, "c - 4*k")}
 
 
 DAMPED = """mbsym: 1
@@ -148,11 +148,11 @@ def test_resonances_of_a_block_that_leads_and_has_damping_need_two_conditions(tm
     data = json.loads(done.stdout)
     jsonschema.validate(data, schema("oscillations"))
     shown = {(one["harmonic"], one["vanishes"], one["vanishes_too"]) for one in data["resonances"]}
-    assert shown == {(1, "2*d", "2*c"), (3, "2*(d - 4*k**2)", "2*c")}
+    assert shown == {(1, "d", "c"), (3, "d - 4*k**2", "c")}
     assert data["forced"] == [["x_dot", "y_dot", "x", "y"]]
     assert (data["with_root_zero"], data["roots_not_found"]) == ([], [])
     told = " ".join(run(str(path), "--of", "x", "--order", "1").stdout.split())
-    assert "where 2*(d - 4*k**2) = 0 and 2*c = 0 (harmonic 3, order 1" in told
+    assert "where d - 4*k**2 = 0 and c = 0 (harmonic 3, order 1" in told
     path.write_text(DAMPED % "positive", encoding="utf-8")
     assert "Resonance" not in run(str(path), "--of", "x", "--order", "1").stdout  # c > 0
 

@@ -50,7 +50,7 @@ def test_events_stops_and_a_section_are_written_drawn_and_said(tmp_path: Path) -
     assert {row["t"] for row in rows if row["event"] == "low"} <= {row["t"] for row in points}
     trajectory = table(tmp_path / "trajectory.csv")
     assert float(trajectory[-1]["t"]) == 50
-    assert {"section.png", "section.svg", "events.csv", "section.csv"} <= set(content["files"])
+    assert {"section.png", "events.csv", "section.csv"} <= set(content["files"])
     assert np.asarray(Image.open(tmp_path / "section.png").convert("L")).std() > 5
     assert "stopped at t = 50 by t > 50" in " ".join(done.output.split())
     assert "low: " in done.output

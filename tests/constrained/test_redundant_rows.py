@@ -566,13 +566,18 @@ def test_bennett_s_condition_is_told_and_tried(b: int, satisfied: bool) -> None:
     assert demanded.satisfied is satisfied
 
 
-def test_what_cannot_move_is_not_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "words", ["simulate --time 1", "lyapunov --time 3", "tradeoff --time 1", "orbit --period 2", "extremes"]
+)
+def test_what_cannot_move_is_not_run(words: str, tmp_path: Path) -> None:
     """a = 3, b = 5: no Bennett linkage.  It was led to a rigid place and its energy called conserved."""
     path = tmp_path / "bennett-no.yaml"
     path.write_text(case("bennett-no"), encoding="utf-8")
-    done = CliRunner().invoke(main, ["simulate", str(path), "--time", "1", "--out", str(tmp_path / "out")])
-    assert done.exit_code == 3
+    command, *options = words.split()
+    done = CliRunner().invoke(main, [command, str(path), *options, "--out", str(tmp_path / "out")])
+    assert done.exit_code == 3, done.output
     assert "error[no-freedom]" in done.output
+    assert not (tmp_path / "out").exists()
     assert "nothing can move from q1 = 0" in done.output
 
 

@@ -13,12 +13,13 @@ import yaml
 from mutants import mutant
 
 import mbsym
-from mbsym.editing.document import changes, formula, look
+from mbsym.editing.document import changes, look
 from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.written import data_of, written
 from mbsym.problems.claims import Outcome
 from mbsym.source import read, to_text
 from mbsym.source.document import read_placed
+from mbsym.source.starter import NewBody, starter
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 NAMES = [*sorted(path.name for path in SYSTEMS.glob("*.yaml")), "satellite.txt"]
@@ -142,14 +143,6 @@ def test_offsets_are_of_the_text_with_its_own_line_ends() -> None:
     assert text[field["from"] : field["to"]] == "[x,0 ,0]"
 
 
-def test_formula() -> None:
-    assert formula("l/2")["mathml"].startswith("<math><mfrac>")
-    complaint = formula("m*(")["complaint"]
-    assert complaint["severity"] == "error"
-    assert 0 <= complaint["from"] <= complaint["to"]
-    assert "<script" not in str(formula("<script>"))
-
-
 # --- edits ------------------------------------------------------------------------------------------------------------
 
 
@@ -234,6 +227,26 @@ def test_renaming_words_and_no_parts_of_words() -> None:
     assert refused(PENDULUM, {"op": "rename", "kind": "parameter", "name": "l", "to": "sin"}) == "bad-name"
     assert refused(PENDULUM, {"op": "rename", "kind": "parameter", "name": "k", "to": "q"}) == "unknown-name"
     assert refused(PENDULUM, {"op": "rename body", "body": "bob", "name": "cart"}) == "repeated-name"
+
+
+@pytest.mark.parametrize("name", ["body", "mass", "inertia", "joint of", "long body"])
+@pytest.mark.parametrize("spelling", ["x.yaml", "x.txt"])
+def test_what_came_with_a_body_is_told_by_its_new_name(name: str, spelling: str) -> None:
+    """The meanings that a new body brings along; those of others, and what somebody wrote, stay."""
+    first = starter("Two", [NewBody(name, None, "hinge"), NewBody(f"{name} 2", name, "hinge")])
+    first = first.replace("moment of inertia of " + name + ", axis 2", "of the " + name)
+    if spelling == "x.txt":
+        first = to_text(mbsym.loads(first).system)
+    after = done(first, {"op": "rename body", "body": name, "name": "rod"}, name=spelling)
+    was, now = (read(text, spelling)[0] for text in (first, after))
+    assert was is not None
+    assert now is not None
+    told = {x.name: x.meaning for x in now.parameters}
+    assert told["m1"] == "mass of rod"
+    assert told["l1"] == "distance from the joint of rod to its mass centre"
+    assert told["J11"] == "moment of inertia of rod, axis 1"
+    assert told["J12"] == f"of the {name}"
+    assert told["m2"] == f"mass of {name} 2"
 
 
 def test_what_is_refused() -> None:

@@ -16,7 +16,7 @@ from properties import settings
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas import shape
-from mbsym.formulas.exchange import to_sympy
+from mbsym.formulas.arithmetic import to_sympy
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, LatexPrinter, latex_symbol, latex_text
 from mbsym.formulas.names import injective

@@ -148,6 +148,7 @@ def test_nothing_is_said_without_ground() -> None:
         ("-(a + t*q)*x", "not periodic"),
         ("-(a + q*cos(t**2))*x", "not periodic"),
         ("-a*(x - 1)*(2 + cos(t))", "motion is none"),
+        ("-a*x/cos(t)", "may be singular"),
         ("-a*x - q*sign(x_dot)", "sign, abs or step"),  # not "constant": problem 6 has no answer, either
     ):
         with pytest.raises(NotPeriodic, match=told):

@@ -139,7 +139,7 @@ def test_a_link_that_is_overlooked_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
     text = LINKED.replace("+ y*z", "+ y*z/10")
     honest = mbsym.simulate(SHIPPED / "double-pendulum.yaml", 1.0)
     assert honest.whole
-    monkeypatch.setattr(separable, "_linked", lambda dynamics: list(range(dynamics.size)))
+    monkeypatch.setattr(separable, "_linked", lambda dynamics: [{i} for i in range(dynamics.size)])
     run = mbsym.simulate(mbsym.loads(text), 10.0, estimate=True)
     assert "each part by itself" in run.chosen.method.traits.title
     assert run.error.largest > 1e-6  # type: ignore[union-attr]

@@ -197,6 +197,31 @@ def test_loops_are_closed_for_the_slider_that_moves() -> None:
     assert not good
 
 
+CRANK = """
+mbsym: 1
+name: Crank and slider
+parameters: {{r: {r}, l: {l}}}
+bodies:
+  - {{name: crank, attached to: 0, rotation: {{axes: [3], angles: [phi]}}, mass centre: [r, 0, 0], mass: 1}}
+  - {{name: slider, attached to: 0, connection point: [s, 0, 0], coordinates: [s], mass: 1}}
+constraints:
+  - distance: {{between: [{{body: crank, point: [r, 0, 0]}}, {{body: slider, point: [0, 0, 0]}}], length: l}}
+"""
+
+
+@pytest.mark.parametrize("unit", [1e-10, 1.0, 1e10])
+def test_a_loop_is_closed_whatever_the_unit_of_length(unit: float) -> None:
+    """r = 1, l = 3, phi = 1: s = cos 1 + sqrt(9 - sin(1)^2), in any unit; ten per cent off is open."""
+    drawn = picture(of(CRANK.format(r=unit, l=3 * unit) + f"initial: {{phi: 0, s: {4 * unit}}}\n"))
+    assert drawn.closure is not None
+    there, good = closed(
+        drawn.program, drawn.closure, {"t": 0.0, "phi": 1.0, "s": 4 * unit, "phi_dot": 0, "s_dot": 0}, ("phi",)
+    )
+    assert good
+    assert there["s"] == pytest.approx(unit * (np.cos(1) + np.sqrt(9 - np.sin(1) ** 2)), rel=1e-8)
+    assert max(gaps(drawn.program, drawn.closure, there | {"s": 1.1 * there["s"]})) > 1e-2
+
+
 def test_a_loop_that_cannot_be_closed_is_told() -> None:
     """A ground of 1.3: crank, coupler and rocker have 0.79 together."""
     text = (SYSTEMS / "four-bar.yaml").read_text(encoding="utf-8").replace("l1: 0.13", "l1: 1.3")
@@ -205,6 +230,24 @@ def test_a_loop_that_cannot_be_closed_is_told() -> None:
     assert any(x.startswith("The constraints are open here") for x in as_json(found)["sentences"])
     good = as_json(picture(mbsym.load(SYSTEMS / "four-bar.yaml").system))["sentences"]
     assert not any("open" in x for x in good)
+
+
+@pytest.mark.parametrize("length", ["1", "1e-8"])
+def test_a_rod_that_is_a_tenth_too_long_is_open_in_all_units(length: str) -> None:
+    """A bob at (0, -l) and a rod of 1.1 l: with l = 1e-8 it counted as closed, beside 1 + |y|."""
+    text = f"""mbsym: 1
+name: rod
+bodies:
+  - {{name: bob, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}}
+constraints:
+  - distance: {{between: [{{body: bob, point: [0, 0, 0]}}, {{body: 0, point: [0, 0, 0]}}], length: {length}}}
+initial: {{x: 0, y: -{length}}}
+"""
+    found = picture(of(text))
+    assert found.closure is not None
+    bob = {x.name: x.value for x in found.coordinates}
+    assert max(gaps(found.program, found.closure, bob)) <= found.closure.tolerance
+    assert max(gaps(found.program, found.closure, bob | {"y": 1.1 * bob["y"]})) > found.closure.tolerance
 
 
 def test_what_orbits_is_seen_from_its_orbit() -> None:

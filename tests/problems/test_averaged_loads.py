@@ -26,8 +26,8 @@ from mbsym.problems.small_parameter import averaging
 from mbsym.report.schemas import schema
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import averages, contradicts
-from mbsym.simulation.averaged import measured
 from mbsym.simulation.expanded import Measured
+from mbsym.simulation.expanded import average_measured as measured
 from mbsym_cli.main import main
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"

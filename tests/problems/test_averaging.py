@@ -18,7 +18,7 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
 from mbsym.report.schemas import schema
 from mbsym.report.words.expansion_measured import contradicts
-from mbsym.simulation.averaged import measured
+from mbsym.simulation.expanded import average_measured as measured
 from mbsym.source import read, to_yaml
 from mbsym_cli.main import main
 

@@ -18,7 +18,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.orbits.floquet import Word, judged
 from mbsym.numerics.scenario import scenario
 from mbsym.report.words.expansion_measured import contradicts
-from mbsym.simulation.averaged import measured
+from mbsym.simulation.expanded import average_measured as measured
 from mbsym_cli.main import main
 
 PENDULUM = """

@@ -272,13 +272,13 @@ constraints: [{velocity: x_dot*sin(psi) - y_dot*cos(psi) = 0}]
     assert not any(one.verdict.stable for one in found.equilibria)
 
 
-def test_constraints_that_tie_what_moves_are_refused() -> None:
-    """x follows where y = v t and x + y = c: that no coordinate without a rate rests is no list of nothing."""
+def test_what_symmetries_do_not_carry_is_refused() -> None:
+    """x = y^2 follows unevenly where y = v t: that no coordinate without a rate rests is no list of nothing."""
     text = (
         HEAD
         + """
 bodies: [{name: B, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: 1}]
-constraints: [{relation: x + y = 1}]
+constraints: [{relation: x = y**2}]
 motion: {y: {rate: 2}}
 """
     )

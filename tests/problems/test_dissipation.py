@@ -129,6 +129,23 @@ def words(analysis: Analysis) -> set[str]:
     return {str(v.word) for v in (stability.verdict, stability.numerical) if v is not None}
 
 
+@pytest.mark.parametrize(
+    ("force", "law"),
+    [
+        # Q(q, 0) = -d(x^4 - x^2 y^2 + y^4)/dq joins the energy; the rest is friction
+        ({"x": "2*x*y**2 - 4*x**3 - b*x_dot", "y": "2*x**2*y - 4*y**3 - y_dot*x_dot**2"}, NOT_GROWING),
+        ({"x": "-b*x - W*x**3 - b*x_dot*abs(x_dot)"}, NOT_GROWING),
+        ({"x": "-b*x + y_dot", "y": "c*y**3 - x_dot"}, CONSERVED),  # a potential and gyroscopic forces in one
+        ({"x": "-b*x + x_dot**3"}, GROWS),
+        ({"x": "y - x_dot**3", "y": "-x - y_dot**3"}, UNKNOWN),  # Q(q, 0) turns round: no potential
+        ({"x": "-x*sin(t) - b*x_dot"}, UNKNOWN),
+    ],
+    ids=str,
+)
+def test_what_a_force_holds_at_rest_joins_the_energy(force: dict[str, str], law: EnergyLaw) -> None:
+    assert point({"generalized force": force}, spring=False).balance.law is law
+
+
 @pytest.mark.parametrize("name", ["s_ray_subcrit_border", "s_ray_quartic_neg", "s_rotdamp_cubic", "s_coast_neg"])
 def test_energy_that_may_grow_makes_nothing_stable(name: str) -> None:
     analysis = mbsym.load(CASES / f"{name}.yaml")

@@ -208,14 +208,17 @@ def test_exponentials_have_one_relation():
     ("potential", "why"),
     [
         ("exp(x) + exp(x + a)", "constant factor"),
-        ("exp(x) + exp(y) + exp(x + y) + exp(x - y) + exp(2*x)", "several ways"),
+        ("exp(6*x) + exp(10*x) + exp(15*x)", "several ways"),
+        ("exp(2*x) + exp(3*x) + exp(-2*x)", "several ways"),
         ("x*log(1 + x**2)", "function log"),
         ("sqrt(2)*x**2", "constant sqrt(2) occurs"),
         ("exp(x) + x**2", "exp(x), x are functions of each other"),
         ("exp(x) + exp(a*x)", "functions of each other"),
         ("exp(a)*x**2", "constant exp(a) occurs"),
         ("exp(sqrt(3)*x - y)", "constant sqrt(3) occurs"),
+        ("exp(sqrt(3)*x - y) + exp(x)", "constant sqrt(3) occurs"),
         ("exp(t*x)", "the time occurs"),
+        ("1/x + exp(x)", "exp(x), x are functions of each other"),
         ("exp(exp(x))", "function exp occurs"),
         (
             "sqrt(x) + sqrt(y) + sqrt(x*y)",
@@ -249,8 +252,67 @@ def test_todas_integrals():
     assert found.generators[-1].polynomial in (henon, -henon)
 
 
+#: Y = sqrt(3) y makes it Toda's lattice: M. Henon, Integrals of the Toda lattice, Phys. Rev. B 9 (1974).
+HENON = POINT.format(
+    place="x, y, 0", names="x, y", potential="(exp(2*x + 2*sqrt(3)*y) + exp(2*x - 2*sqrt(3)*y) + exp(-4*x))/24"
+)
+
+
+def test_todas_third_integral_in_henons_form():
+    """8 x'(x'^2 - 3 y'^2) + ..., Henon's I, here with x and y the other way round, in the field of sqrt(3)."""
+    found, field = _integrals(HENON)
+    s, u, v, a, b, c = map(field.generator, ("sqrt(3)", *field.variables))
+    assert field.relations == (a * b * c - 1,)
+    by_hand = 8 * v * (v**2 - 3 * u**2) - s * (a - b) * u + (a + b - 2 * c) * v
+    assert field.derivative(by_hand) == 0
+    assert field.derivative(by_hand + 2 * s * (a - b) * u) != 0  # the other root of 3 is another system
+    (new,) = found.new
+    assert new.polynomial in (by_hand, -by_hand)
+    assert found.complete
+    assert (found.independent, field.free_parameters) == (2, ())
+
+
+@pytest.mark.parametrize(("number", "count"), [("2", 0), ("3", 1), ("5", 0), ("12", 0), ("3/4", 0), ("27/9", 1)])
+def test_of_other_numbers_in_the_place_of_3_there_is_no_third_integral(number, count):
+    """Of exponents v_i there is none where some 2 v_i v_j/v_i^2 is no integer (M. Adler and P. van Moerbeke, 1982)."""
+    found, _ = _integrals(HENON.replace("sqrt(3)", f"sqrt({number})"))
+    assert (found.complete, len(found.new)) == (True, count)
+
+
+def test_roots_of_numbers_are_independent():
+    """Two oscillators, sqrt(2) and sqrt(3) in their springs, with x and y turned by 45 degrees: both energies."""
+    potential = "sqrt(2)*(x + y)**2 + sqrt(3)*(x - y)**2 + (x + y)**4"
+    found, field = _integrals(POINT.format(place="x, y, 0", names="x, y", potential=potential))
+    two, three, u, v, x, y = map(field.generator, ("sqrt(2)", "sqrt(3)", *field.variables))
+    energies = [(u + v) ** 2 / 4 + two * (x + y) ** 2 + (x + y) ** 4, (u - v) ** 2 / 4 + three * (x - y) ** 2]
+    assert all(field.derivative(one) == 0 for one in energies)
+    assert (found.complete, len(found.generators), found.independent) == (True, 1, 1)  # the other is of degree 4
+    assert [f.polynomial in (4 * energies[1], -4 * energies[1]) for f in found.generators] == [True]
+
+
+@pytest.mark.parametrize(
+    ("potential", "variables"),
+    [
+        ("cosh(x) + cosh(y)", ["exp(x)", "exp(-x)", "exp(y)", "exp(-y)"]),
+        ("cosh(x) + cosh(2*x) + y**2", ["exp(x)", "exp(-x)"]),
+        ("exp(x) + exp(y) + exp(x + y) + exp(x - y) + exp(2*x)", ["exp(x)", "exp(y)", "exp(-y)"]),
+    ],
+)
+def test_exponents_that_span_a_lattice_are_told_by_a_basis(potential, variables):
+    """Of separate parts the energies are kept, and nothing that was none becomes an integral."""
+    text = POINT.format(place="x, y, 0", names="x, y", potential=potential)
+    loaded = mbsym.loads(text)
+    field, transfer = vector_field(loaded.form, loaded.equations)
+    assert [name for name in field.variables if name.startswith("exp(")] == variables
+    pairs = [(name, f"exp(-{name[4:]}") for name in variables if f"exp(-{name[4:]}" in variables]
+    assert list(field.relations) == [field.generator(a) * field.generator(b) - 1 for a, b in pairs]
+    top, bottom = transfer.fraction(loaded.integrals[0].formula.polynomial)
+    assert bottom.is_constant()
+    assert field.reduced(field.derivative(top)) == 0
+
+
 def _integrals(text, values=None):
-    there = setting(mbsym.loads(text), values)
+    there = setting(mbsym.loads(text), values, driven=True)
     return integrals_of(there, 3), there.field
 
 
@@ -304,6 +366,62 @@ def test_two_centres_keep_eulers_integral():
         rate = field.reduced(field.derivative(top) * bottom - top * field.derivative(bottom))
         assert (rate == 0) is (sign == 1)
     assert field.reduced(near**2 - far**2) == -4 * a * x
+
+
+def test_calogeros_particles_keep_a_cubic_integral():
+    """p1 p2 p3 - g (p1/(x2 - x3)^2 + ...) of 1/(xi - xj)^2: J. Moser, Adv. Math. 16 (1975); another sign is refuted.
+
+    Of w = 1/(x - y), u = 1/(y - z), v = 1/(x - z) positions are no variables: w u - (w + u) v = 0.
+    """
+    text = POINT.format(place="x, y, z", names="x, y, z", potential="g/(x - y)**2 + g/(y - z)**2 + g/(z - x)**2")
+    found, field = _integrals(text)
+    assert set(field.variables) == {"x_dot", "y_dot", "z_dot", "1/(x - y)", "1/(y - z)", "1/(x - z)"}
+    g, p, q, r = map(field.generator, ("g", "x_dot", "y_dot", "z_dot"))
+    w, u, v = (field.generator(f"1/({pair})") for pair in ("x - y", "y - z", "x - z"))
+    assert [field.reduced(w * u - w * v - u * v)] == [0]
+    for sign in (1, -1):
+        moser = p * q * r - sign * g * (p * u**2 + q * v**2 + r * w**2)
+        assert (field.reduced(field.derivative(moser)) == 0) is (sign == 1)
+    assert (found.complete, found.independent, [one.weight for one in found.generators]) == (True, 3, [1, 2, 3])
+
+
+def test_positions_that_are_divided_by():
+    """Winternitz and others (1967): k (x^2 + y^2) + a/x^2 + b/y^2 has three independent ones; one is by hand."""
+    potential = "k*(x**2 + y**2) + a/x**2 + h/y**2"
+    text = POINT.format(place="x, y, 0", names="x, y", potential=potential).replace("a: positive", "a: real")
+    there = setting(mbsym.loads(text), driven=True)
+    found, field = integrals_of(there, 4), there.field
+    a, h, u, v, x, y, p, q = map(field.generator, ("a", "h", "x_dot", "y_dot", "x", "y", "1/x", "1/y"))
+    assert (list(field.relations), field.units) == ([x * p - 1, y * q - 1], {"1/x", "1/y"})
+    turning = (x * v - y * u) ** 2 + 2 * (a * y**2 * p**2 + h * x**2 * q**2)
+    assert field.reduced(field.derivative(turning)) == 0
+    assert (found.complete, found.independent) == (True, 3)
+    assert found.rational == ()
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [
+        "1/(x - y)**2 + 1/(y - z)**2 + 1/(z - x)**2 + x**2 + y**2 + z**2",  # reciprocals share their positions
+        "1/x + 1/(x - a)",  # functions of each other
+        "1/(exp(x) + 1)",
+    ],
+)
+def test_where_reciprocals_are_no_variables_they_are_denominators(potential):
+    """As without: the energy is a quotient, and nothing is denied beyond what is said."""
+    text = POINT.format(place="x, y, z", names="x, y, z", potential=potential)
+    there = setting(mbsym.loads(text), driven=True)
+    assert not any(name.startswith("1/") for name in there.field.variables)
+    assert there.rational
+
+
+def test_what_constraints_tie_is_no_reciprocal_by_itself():
+    """On a sphere 1/z is tied to x and y: without that relation integrals on it would be denied."""
+    text = POINT.format(place="x, y, z", names="x, y, z", potential="k*x**2 + h*y**2 + g*z")
+    text += "constraints:\n  - relation: x**2 + y**2 + z**2 = 1\ndependent: [z]\n"
+    field = setting(mbsym.loads(text), driven=True).field
+    x, y, z = map(field.generator, "xyz")
+    assert field.relations == (x**2 + y**2 + z**2 - 1,)
 
 
 def test_a_root_of_a_unit_vector_is_refused():

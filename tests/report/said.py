@@ -77,6 +77,9 @@ class Module(ast.NodeVisitor):
             name in self.refusals and any(x.arg not in ("limit", "remedy") for x in node.keywords)
         ):
             self._message(node)
+        elif name == "Unreadable" and self.name == "source/matrix_file.py":
+            self._message(node)
+            self._words([x.value for x in node.keywords if x.arg == "remedy"], node)
         elif name in ("Measure", "Unusable"):
             self._words(node.args[:1], node)
         elif name in ("error", "warning") and self.of_descriptions:

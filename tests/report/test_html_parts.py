@@ -6,10 +6,12 @@ import re
 from html import unescape
 
 import pytest
+from conftest import SHIPPED, derived
 
 from mbsym.analysis import Analysis
 from mbsym.report.html.formulas import inline
 from mbsym.report.html.report import PARTS, part_html, render, title
+from mbsym.report.targets import TARGETS
 from mbsym.source import read
 
 PENDULUM = """\
@@ -72,3 +74,11 @@ def test_nothing_of_a_description_becomes_markup(pendulum: Analysis, part: str |
 def test_there_is_no_other_part(pendulum: Analysis) -> None:
     with pytest.raises(KeyError):
         part_html(pendulum, "../report", ())
+
+
+def test_no_blank_is_left_where_a_link_is_not_shown() -> None:
+    """In print and in notebooks the arrows to conditions are hidden: the comma behind one stands at the formula."""
+    html = TARGETS["html"].render(derived(SHIPPED / "gravity-gradient.yaml"), (6,))
+    page = re.sub(r'<a class="there".*?</a>', "", html)
+    assert 'class="there"' in html
+    assert not re.search(r"[ \u00a0](</span>)?,", page.partition("<dl>")[2].partition("</dl>")[0])

@@ -137,7 +137,7 @@ def test_an_amplitude_that_parameters_may_forbid(limit_cycle):
     text = said(limit_cycle)
     assert "Secular terms are removed for certain amplitudes only. That of this solution" in text
     assert "The amplitude is real and not zero where 4 k > 0." in text
-    assert "The error of the periodic solution was not measured" not in text  # it needs no x(0)
+    assert "The error of this solution was not measured" not in text  # it needs no x(0)
     assert "fall more slowly" not in text
     known = point(force="eps*(k - x**2)*x_dot", sign="positive")
     assert "real and not zero" not in said(known)

@@ -460,11 +460,11 @@ motion: {theta: theta0}
 
 def test_verdicts_presume_the_conditions_of_problem_4():
     analysis = mbsym.loads(HOOP)
-    presumed = "provided the condition of problem 4 holds"
+    presumed = "provided the condition of the motion (problem 4) holds"
     assert f"Verdict, {presumed}: " in TARGETS["latex"].render(analysis, (4, 6)).replace("\n", " ")
     assert presumed in TARGETS["wolfram"].render(analysis, (6,))
     assert any(text.startswith(f"Verdict, {presumed}: ") for text in told(analysis, 6))
-    assert "problem 4 holds" not in TARGETS["latex"].render(analysis_of("heavy-top.yaml"), (4, 6))
+    assert "(problem 4) holds" not in TARGETS["latex"].render(analysis_of("heavy-top.yaml"), (4, 6))
 
 
 def test_the_terminal_says_what_a_verdict_depends_on():

@@ -320,6 +320,18 @@ def test_the_state_that_refutes_an_integral_names_the_input() -> None:
     assert 2 * at["x_dot"] * at["u"] == Fraction(dict(claim.counterexample.shows)["dI/dt"])
 
 
+def test_what_refutes_a_condition_is_set_as_mathematics() -> None:
+    """A spring of k - 2 c is stable without k - 3 c > 0: at 2 c < k < 3 c the difference is negative, and a formula."""
+    text = PUMPED.replace("LOAD", "-(k - 2*c)*x").replace("k: positive}", "k: positive, c: positive}")
+    text = text.partition("claims:")[0] + 'claims:\n  - {claim: condition, that: "k - 3*c > 0"}\n'
+    analysis = mbsym.loads(text)
+    (claim,) = analysis.claims
+    assert claim.counterexample is not None
+    at = {name: Fraction(value) for name, value in claim.counterexample.at}
+    assert 2 * at["c"] < at["k"] <= 3 * at["c"]
+    assert "$k - 3 c = " in TARGETS["latex"].render(analysis, (6,))
+
+
 TWO = """
 mbsym: 1
 name: two

@@ -43,6 +43,14 @@ EVERYTHING = """<mujoco model="everything">
   <geom type="ellipsoid" size="0.1 0.2 0.3"/></body>
 </worldbody></mujoco>"""
 
+#: Euler angles about turned and fixed axes in turn; geoms that weigh nothing leave an <inertial> as it is.
+SETTINGS = """<mujoco><compiler eulerseq="xZy" inertiafromgeom="true" inertiagrouprange="0 2"/><worldbody>
+<body name="a" euler="20 40 -70"><joint name="j1" axis="0 1 0"/><inertial pos="0 0 -1" mass="1" diaginertia="1 1 1"/>
+ <frame euler="-10 30 50"><geom size="0.1" pos="0.2 0 0"/></frame>
+ <body name="b" pos="0 0 -1" euler="70 -20 35"><joint name="j2" axis="1 0 2"/>
+  <inertial pos="0.1 0 -1" mass="2" diaginertia="0.3 0.4 0.5" euler="15 25 60"/>
+  <geom size="0.2" mass="0"/><geom size="0.2" group="3"/></body></body></worldbody></mujoco>"""
+
 #: Two pendulums that are tied at a point and by a relation of their joints.
 TIED = """<mujoco><compiler angle="radian"/><worldbody>
 <body name="a"><joint name="y" axis="0 1 0" ref="0.3"/>
@@ -72,7 +80,7 @@ def whole(model: Any, data: Any) -> np.ndarray:
     return found.T
 
 
-@pytest.mark.parametrize("text", [ARM, EVERYTHING])
+@pytest.mark.parametrize("text", [ARM, EVERYTHING, SETTINGS])
 def test_masses_forces_and_frames_are_mujoco_s(text: str) -> None:
     """M(q), c + g; of the ball only M about its own axes at zero angles, where angular velocity and rates agree."""
     _, own, joints = ours(text)

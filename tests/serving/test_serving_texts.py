@@ -61,3 +61,11 @@ def test_converted_it_is_the_same_system(to: str) -> None:
 @pytest.mark.parametrize("source", ["", "m*", "__import__('os')", "(" * 10_000, "9**9**9**9", "<b>"])
 def test_what_is_no_formula_is_complained_about(source: str) -> None:
     assert "mathml" not in looking.typed_formula(source)
+
+
+def test_a_formula_as_it_is_typed() -> None:
+    assert looking.typed_formula("l/2")["mathml"].startswith("<math><mfrac>")
+    complaint = looking.typed_formula("m*(")["complaint"]
+    assert complaint["severity"] == "error"
+    assert 0 <= complaint["from"] <= complaint["to"]
+    assert "<script" not in str(looking.typed_formula("<script>"))

@@ -9,6 +9,8 @@ import pytest
 
 from mbsym.expressions.tree import text
 from mbsym.source.document import load, read
+from mbsym.source.labels import BODY, HEADER, SECTIONS
+from mbsym_cli.explain import explanations
 
 ROOT = Path(__file__).parents[2]
 FORM = ROOT / "tests" / "published" / "figure-3.txt"
@@ -166,3 +168,49 @@ def test_a_slip_is_one_complaint_at_its_place_and_speaks_of_labels() -> None:
     assert slip.span is not None
     assert line[slip.span.column - 1 :].startswith("thetta")
     assert len(errors) == 3
+
+
+def test_it_is_read_as_printed_signs_have_it() -> None:
+    """Minus, dots of products, lowered and raised digits, as they are copied from a page."""
+    printed = (
+        BY_HAND.replace("(0 l/2 0)", "(0, 3·l²/l\u2081, 0)")
+        .replace("(0 -l 0)", "(0 \u2212l 0)")
+        .replace("M2", "M\u2082")
+    )
+    system, _ = read(printed, "form.txt")
+    assert system is not None
+    (body,) = system.bodies
+    assert [text(x) for x in body.connection_point] == ["0", "3*l**2/l1", "0"]
+    assert [text(x) for x in body.mass_centre] == ["0", "-l", "0"]
+    assert text(body.mass) == "M2"
+
+
+def test_what_is_a_mass_or_in_a_mass_centre_is_no_forgotten_coordinate() -> None:
+    """Body without a list of coordinates: l stands in its mass centre and is a parameter, R is asked for."""
+    form = BY_HAND.replace("  Generalized coordinates {ψ}\n", "").replace("{ψ - χ", "{ψ")
+    system, complaints = read(form, "form.txt")
+    assert system is not None, [item.message for item in complaints.items]
+    assert "l" in system.parameter_names
+    assert system.coordinates == ("psi",)
+    _, complaints = read(form.replace("(0 l/2 0)", "(0 R 0)"), "form.txt")
+    (error,) = [item for item in complaints.items if item.severity == "error"]
+    assert "R" in error.message
+    assert error.hint is not None
+    assert "'Generalized coordinates: psi, R'" in error.hint
+
+
+def test_a_product_that_is_written_together_is_asked_about() -> None:
+    _, complaints = read(BY_HAND.replace("Jx\t", "M2l**2\t"), "form.txt")
+    (warning,) = complaints.items
+    assert warning.hint is not None
+    assert "M2*l" in warning.hint
+    _, complaints = read(BY_HAND, "form.txt")
+    assert "product" not in str(complaints.items[0].hint)
+
+
+def test_explain_knows_the_labels() -> None:
+    known = explanations("plain text")[0].casefold()
+    for label in (*HEADER, *SECTIONS, *BODY):
+        assert label in known or label == "number of bodies"
+        assert explanations(label) or label == "number of bodies", label
+    assert explanations("vector of relative linear velocity") == explanations("relative velocity")

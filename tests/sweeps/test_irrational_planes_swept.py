@@ -9,9 +9,8 @@ import pytest
 
 import mbsym
 from mbsym.maps.section import Axis, Unfit, section
-from mbsym.numerics.ensembles.variation import Grid
+from mbsym.numerics.ensembles.variation import Grid, Points
 from mbsym.sweeps.judged import EXACT, RIGHT, VERDICT, WORDS, SingleVerdicts, StabilityMeasure
-from mbsym.sweeps.points import Points
 from mbsym.sweeps.sweep import Asked, measure_of
 
 TEXT = """

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbsym.numerics.ensembles.variation import Draw, Grid, complaints
-from mbsym.sweeps.points import Points
+from mbsym.numerics.ensembles.variation import Draw, Grid, Points, complaints
 from mbsym.sweeps.statistics import interval
 from mbsym.sweeps.sweep import chunks, shard
 

@@ -10,8 +10,8 @@ from properties import settings
 
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.point import Rationals
-from mbsym.algebra.root_signs import changes, real_roots, routh_column, sturm_ends
 from mbsym.algebra.roots import count_roots
+from mbsym.sweeps.deciding import changes, real_roots, routh_column, sturm_ends
 
 NUMBERS = Rationals({}, {})
 COEFFICIENTS = st.lists(st.integers(-9, 9), min_size=2, max_size=8).filter(lambda cs: cs[-1] != 0 and cs[0] != 0)

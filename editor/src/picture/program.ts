@@ -96,7 +96,7 @@ function openRows(poses: Poses, closure: Closure, state: State, tolerance = clos
   return closure.names.filter((_, i) => {
     let scale = 0;
     closure.coordinates.forEach((name, k) => {
-      scale += Math.abs(values[closure.slopes[i]![k]!]!) * (1 + Math.abs(state[name] ?? 0));
+      scale += Math.abs(values[closure.slopes[i]![k]!]!) * (closure.sizes[k]! + Math.abs(state[name] ?? 0));
     });
     return !(Math.abs(values[closure.rows[i]!]!) <= tolerance * (scale || 1));
   });
@@ -111,7 +111,9 @@ export function close(poses: Poses, closure: Closure, state: State, held: readon
     const slopes = closure.slopes.map((row) => free.map((k) => values[row[k]!]!));
     const change = shortest(slopes, closure.rows.map((k) => -values[k]!));
     if (!change.every(Number.isFinite)) break;
-    const far = Math.max(...free.map((k, i) => Math.abs(change[i]!) / (1 + Math.abs(state[closure.coordinates[k]!]!))));
+    const far = Math.max(
+      ...free.map((k, i) => Math.abs(change[i]!) / (closure.sizes[k]! + Math.abs(state[closure.coordinates[k]!]!))),
+    );
     const part = Math.min(1, LONGEST / Math.max(far, 1e-300));
     free.forEach((k, i) => (state[closure.coordinates[k]!]! += part * change[i]!));
   }

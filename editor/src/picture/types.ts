@@ -85,6 +85,7 @@ export interface Line {
 
 export interface Closure {
   coordinates: string[];
+  sizes: number[];
   rows: number[];
   slopes: number[][];
   names: string[];

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product, zip_longest
 from typing import Any, Protocol
 
 from flint import fmpq, fmpq_poly
 
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.matrices import echelon
+from mbsym.algebra.matrices import echelon, faddeev
 from mbsym.algebra.plane.fields import Extension, Over, OverField, Point
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.projection import Polynomial, coefficients
@@ -152,6 +153,10 @@ class ElementPolynomial:
                     rest[at] = rest[at] - factor * c
         return ElementPolynomial(quotient[::-1]), ElementPolynomial(rest)
 
+    def __sub__(self, other: ElementPolynomial) -> ElementPolynomial:
+        pairs: Any = zip_longest(self._coefficients, other.coeffs(), fillvalue=fmpq(0))
+        return ElementPolynomial([a - b for a, b in pairs])
+
     def __mul__(self, other: ElementPolynomial) -> ElementPolynomial:
         a, b = self.coeffs(), other.coeffs()
         if not a or not b:
@@ -216,25 +221,13 @@ class ElementPolynomial:
         b, c = f // common, slope // common
         multiplicity = 1
         while b.degree() > 0:
-            d = _difference(c, b.derivative())
+            d = c - b.derivative()
             factor = b.gcd(d) if d.degree() >= 0 else b
             if factor.degree() > 0:
                 factors.append((factor, multiplicity))
             b, c = b // factor, d // factor
             multiplicity += 1
         return self.leading_coefficient(), factors
-
-
-def _difference(a: ElementPolynomial, b: ElementPolynomial) -> ElementPolynomial:
-    left, right = a.coeffs(), b.coeffs()
-    size = max(len(left), len(right))
-    return ElementPolynomial([_at(left, k) - _at(right, k) for k in range(size)] if size else [])
-
-
-def _at(row: Sequence[Element], k: int) -> Any:
-    if k < len(row):
-        return row[k]
-    return fmpq(0) if not row else row[0] * 0
 
 
 class ElementMatrix:
@@ -293,40 +286,13 @@ class ElementMatrix:
         return echelon(_ENTRIES, self._rows, columns)
 
     def charpoly(self) -> ElementPolynomial:
-        """det(lambda - A), after a similarity that makes A of Hessenberg's form."""
-        n, a = self._size[0], self.tolist()
-        for k in range(1, n - 1):
-            pivot = next((r for r in range(k, n) if a[r][k - 1] != 0), None)
-            if pivot is None:
-                continue
-            if pivot != k:
-                a[pivot], a[k] = a[k], a[pivot]
-                for row in a:
-                    row[pivot], row[k] = row[k], row[pivot]
-            inverse = _ENTRIES.reciprocal(a[k][k - 1])
-            for r in range(k + 1, n):
-                if a[r][k - 1] == 0:
-                    continue
-                factor = a[r][k - 1] * inverse
-                a[r] = [x if _plain_zero(y) else x - factor * y for x, y in zip(a[r], a[k], strict=True)]
-                for row in a:
-                    row[k] = row[k] + factor * row[r]
-        # p_k = (lambda - a_kk) p_(k-1) - sum_i a_(k-i)k (product of subdiagonal elements) p_(k-i-1)
-        polynomials: list[list[Any]] = [[fmpq(1)]]
-        for k in range(n):
-            previous = polynomials[-1]
-            row = [fmpq(0), *previous]
-            for j, c in enumerate(previous):
-                row[j] = row[j] - a[k][k] * c
-            product: Any = fmpq(1)
-            for i in range(1, k + 1):
-                product = product * a[k - i + 1][k - i]
-                factor = product * a[k - i][k]
-                for j, c in enumerate(polynomials[k - i]):
-                    row[j] = row[j] - factor * c
-            polynomials.append(row)
+        """det(lambda - A)"""
+        return ElementPolynomial(self._faddeev()[1])
+
+    def _faddeev(self) -> tuple[list[list[list[Any]]], list[Any]]:
+        """adj(lambda - A) and det(lambda - A): an inverse would cost more than all of these products."""
         zero = self._zero()
-        return ElementPolynomial([zero + c for c in polynomials[-1]])
+        return faddeev([[zero + x for x in row] for row in self._rows], zero, zero + 1)
 
     def _zero(self) -> Element:
         """Raises TypeError for a matrix of rational numbers."""
@@ -336,33 +302,14 @@ class ElementMatrix:
         return some * 0
 
     def minpoly(self) -> ElementPolynomial:
-        """The monic polynomial of least degree that A annuls.
-
-        Of each unit vector in turn: what the polynomial so far makes of it, and the first of w, A w, A^2 w, ... that
-        depends on those before.
-        """
-        n, zero = self._size[0], self._zero()
-        polynomial = ElementPolynomial([zero + 1])
-        for unit in range(n):
-            w: list[Any] = [zero + int(i == unit) for i in range(n)]
-            total = [zero] * n
-            for c in reversed(polynomial.coeffs()):
-                total = [a + c * b for a, b in zip(self._applied(total), w, strict=True)]
-            if all(not x for x in total):
-                continue
-            rows = [total]
-            while True:
-                rows.append(self._applied(rows[-1]))
-                columns = ElementMatrix(n, len(rows), [row[i] for i in range(n) for row in rows])
-                reduced, pivots = columns._reduced(len(rows))
-                if len(pivots) < len(rows):
-                    break
-            relation = [-reduced[k][len(rows) - 1] for k in range(len(rows) - 1)]
-            polynomial = polynomial * ElementPolynomial([*(zero + c for c in relation), zero + 1])
-        return polynomial
-
-    def _applied(self, vector: Sequence[Any]) -> list[Any]:
-        return [_ENTRIES.dot(row, vector) for row in self._rows]
+        """det(lambda - A) over the common divisor of its adjugate: the least polynomial that A annuls."""
+        adjugates, characteristic = self._faddeev()
+        common, places = ElementPolynomial([]), range(self._size[0])
+        for i, j in product(places, places):
+            common = common.gcd(ElementPolynomial([b[i][j] for b in reversed(adjugates)]))
+            if common.degree() == 0:
+                break
+        return ElementPolynomial(characteristic) // common
 
 
 def _plain_zero(x: Any) -> bool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import count
 
 from mbsym.editing.document import view
-from mbsym.editing.document.meaning import Json, Meant, setting, word_of
-from mbsym.editing.document.primitives import Primitive, Remove, Shift
-from mbsym.editing.document.words import body_renamed, pattern, places, words_of
+from mbsym.editing.document.meaning import Edit, Json, Meant, setting, word_of
+from mbsym.editing.document.primitives import Primitive, Remove, Replace, Shift
+from mbsym.editing.document.words import Place, body_renamed, pattern, places, words_of
 from mbsym.editing.document.written import Data, Path, Refused, Written, child, node_at, spelled_path
 from mbsym.source.bodies import is_body_name
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
@@ -128,7 +129,27 @@ def rename_body(document: Written, operation: Json) -> Meant:
         return Meant([])
     new = _new_name(document, new_name)
     primitives, edits = body_renamed(document, old, new)
-    return Meant(primitives, edits, ("bodies", index), bodies={old: new})
+    bodies = {old: new}
+    for place, meaning, edit in _meanings_renamed(document, old, new):
+        primitives.append(Replace(place.path, meaning))
+        edits.append(edit)
+        bodies[place.node.text] = meaning
+    return Meant(primitives, edits, ("bodies", index), bodies=bodies)
+
+
+def _meanings_renamed(document: Written, old: str, new: str) -> Iterator[tuple[Place, str, Edit]]:
+    """Of parameters that came with the body, "mass of body": where they stand, and what they become."""
+    parameters = node_at(document.tree, ("parameters",))
+    around = [x.meaning.split("\0") for x in parameters_of(1, NewBody("\0")).values()]
+    for entry in parameters.entries if isinstance(parameters, Mapping) else ():
+        node = child(entry.value, "meaning")
+        if not isinstance(node, Scalar):
+            continue
+        for before, after in around:
+            start = document.text.find(f"{before}{old}{after}", *document.extent(node)) + len(before)
+            if node.text == f"{before}{old}{after}" and start >= len(before):
+                path = spelled_path(document.tree, ("parameters", entry.key.text, "meaning"))
+                yield Place(path, node, "body"), f"{before}{new}{after}", Edit(start, start + len(old), new)
 
 
 def branch_of(document: Written, name: str) -> list[int]:

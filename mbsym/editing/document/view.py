@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from collections.abc import Sequence as Items
 from typing import Any
 
@@ -59,19 +59,7 @@ def look(text: str, name: str) -> Json:
         "complaints": [complaint_view(document, complaint) for complaint in document.complaints],
     }
     offsets = original_offsets(text)
-    return view if offsets is None else _moved(view, offsets)
-
-
-def formula(source: str) -> Json:
-    """A formula as it is typed: ``{"mathml": ...}``, or ``{"complaint": ...}`` with offsets in ``source``."""
-    complaints = Complaints()
-    tree = parse_expression(source, complaints)
-    if tree is not None and not complaints.errors:
-        return {"mathml": math(content(tree))}
-    complaint = next(iter(complaints.errors), Complaint("syntax", "this is no formula"))
-    start = complaint.span.column - 1 if complaint.span else 0
-    end = start + complaint.span.length if complaint.span else len(source)
-    return {"complaint": _told(complaint, start, end, 1, start + 1)}
+    return view if offsets is None else moved(view, offsets.__getitem__)
 
 
 # --- what cannot be read ----------------------------------------------------------------------------------------------
@@ -244,9 +232,9 @@ def _text(node: Node | None, key: str) -> str:
 def complaint_view(document: Written, complaint: Complaint) -> Json:
     """A complaint with its place; what concerns the whole text stands at its beginning."""
     if complaint.span is None:
-        return _told(complaint, 0, 0, 1, 1)
+        return told(complaint, 0, 0)
     start = document.offset(complaint.span)
-    return _told(
+    return told(
         complaint,
         start,
         min(len(document.text), start + complaint.span.length),
@@ -255,19 +243,20 @@ def complaint_view(document: Written, complaint: Complaint) -> Json:
     )
 
 
-def _told(fault: Complaint, start: int, end: int, line: int, column: int) -> Json:
+def told(fault: Complaint, start: int, end: int, line: int = 1, column: int = 1) -> Json:
+    """A complaint as the page has it."""
     fields = {"severity": fault.severity, "code": fault.code, "message": fault.message, "hint": fault.hint}
     return fields | {"from": start, "to": end, "line": line, "column": column}
 
 
-def _moved(value: Any, offsets: list[int]) -> Any:
-    """The same with offsets of the text as it was given."""
-    if isinstance(value, list):
-        return [_moved(item, offsets) for item in value]
+def moved(value: Any, place: Callable[[int], int]) -> Any:
+    """A JSON value with ``place`` of its places: of the whole numbers under the keys ``from`` and ``to``."""
+    if isinstance(value, list | tuple):
+        return [moved(item, place) for item in value]
     if not isinstance(value, dict):
         return value
     return {
-        key: offsets[item] if key in ("from", "to") and isinstance(item, int) else _moved(item, offsets)
+        key: place(item) if key in ("from", "to") and type(item) is int else moved(item, place)
         for key, item in value.items()
     }
 

@@ -28,6 +28,7 @@ from collections.abc import Collection, Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from mbsym.algebra.matrices import united
 from mbsym.algebra.program import Node, Program
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.mechanics.factorisation import Elimination
@@ -55,14 +56,7 @@ class Dependent:
 
 def dependent_sets(relations: Iterable[Collection[int]], independent: Collection[int]) -> tuple[Dependent, ...]:
     """Which rows hang together by ``relations``: each names the rows of one that say something about each other."""
-    sets: list[set[int]] = []
-    for relation in relations:
-        joined = set(relation)
-        for group in [group for group in sets if group & joined]:
-            joined |= group
-            sets.remove(group)
-        sets.append(joined)
-    dependents = (Dependent(tuple(sorted(group)), len(group & set(independent))) for group in sets)
+    dependents = (Dependent(tuple(sorted(group)), len(group & set(independent))) for group in united(relations))
     return tuple(sorted(dependents, key=lambda group: group.rows))
 
 

@@ -26,7 +26,7 @@ from typing import Any
 
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import Constrained, NoClosedForm
-from mbsym.algebra.matrices import adjugate, determinant
+from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.motion import vanishing
 
@@ -186,14 +186,9 @@ def _connected(
     ring: Ring, jacobian: Sequence[Sequence[Polynomial]], rows: Sequence[int]
 ) -> list[tuple[list[int], set[int]]]:
     """Rows that hang together by their columns, in the order of their first ones, and these columns."""
-    blocks: list[tuple[list[int], set[int]]] = []
-    for i in rows:
-        own, columns = [i], {k for k, x in enumerate(jacobian[i]) if not ring.vanishes(x)}
-        for other in [block for block in blocks if block[1] & columns]:
-            own, columns = [*other[0], *own], columns | other[1]
-            blocks.remove(other)
-        blocks.append((sorted(own, key=rows.index), columns))
-    return sorted(blocks, key=lambda block: rows.index(block[0][0]))
+    columns = [{k for k, x in enumerate(jacobian[i]) if not ring.vanishes(x)} for i in rows]
+    blocks = components(len(rows), lambda a, b: not columns[a].isdisjoint(columns[b]))
+    return [([rows[a] for a in block], set().union(*(columns[a] for a in block))) for block in blocks]
 
 
 def _choose(

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import IntEnum
 from fractions import Fraction
-from math import log
 
 import numpy as np
 
@@ -26,7 +25,7 @@ from mbsym.numerics.kernels.llvm import (
 )
 from mbsym.numerics.kernels.sine_cosine import splat, vector
 from mbsym.numerics.kernels.writer import BIT, INTEGER, POINTER, Function, Number, Value
-from mbsym.numerics.methods.marching import GROWTH, INTEGRAL, SAFETY, SHRINKAGE
+from mbsym.numerics.methods.marching import estimated, growth, shrinkage
 from mbsym.numerics.methods.tableaux import Stages, Tableau, add_compensated
 
 # Writing LLVM functions over several numbers side by side: every value is a vector of ``lanes`` numbers, one a state.
@@ -43,8 +42,11 @@ class Lanes(Function):
     def __init__(self, name: str, arguments: Sequence[tuple[str, str]], lanes: int) -> None:
         super().__init__(name, arguments)
         self.lanes = lanes
-        self.kind = vector(lanes, DOUBLE)
-        self.mask = vector(lanes, BIT)
+        self.kind = self.real = vector(lanes, DOUBLE)
+        self.bits = vector(lanes, BIT)
+
+    def mask(self, kind: str) -> str:
+        return self.bits if kind == self.kind else BIT
 
     def number(self, value: Value | Number, kind: str) -> Value:
         if isinstance(value, Value) or kind != self.kind:
@@ -59,43 +61,35 @@ class Lanes(Function):
         """A single number."""
         return Value(self, DOUBLE, "0x7FF0000000000000")
 
-    def below(self, a: Value, sign: str, b: Value | Number) -> Value:
-        """The mask of ``a sign b``; false where one is not a number."""
-        ordered = {"<": "olt", "<=": "ole", ">": "ogt", ">=": "oge", "!=": "one"}[sign]
-        right = self.number(b, self.kind)
-        return self.value(self.mask, f"fcmp {ordered} {self.kind} {a.text}, {right.text}")
-
     def select(self, mask: Value, yes: Value | Number, no: Value | Number) -> Value:
         """Lane by lane ``yes`` where the mask is set, else ``no``."""
         first, second = self.number(yes, self.kind), self.number(no, self.kind)
-        operands = f"{self.mask} {mask.text}, {self.kind} {first.text}, {self.kind} {second.text}"
+        operands = f"{self.bits} {mask.text}, {self.kind} {first.text}, {self.kind} {second.text}"
         return self.value(self.kind, f"select {operands}")
 
     def without(self, mask: Value, other: Value) -> Value:
         """mask and not other."""
         ones = splat(self.lanes, BIT, "1")
-        turned = self.value(self.mask, f"xor {self.mask} {other.text}, {ones}")
-        return self.value(self.mask, f"and {self.mask} {mask.text}, {turned.text}")
+        return mask & self.value(self.bits, f"xor {self.bits} {other.text}, {ones}")
 
     def anywhere(self, mask: Value) -> Value:
         """A bit: whether the mask is set in some lane."""
-        whole = self.value(f"i{self.lanes}", f"bitcast {self.mask} {mask.text} to i{self.lanes}")
+        whole = self.value(f"i{self.lanes}", f"bitcast {self.bits} {mask.text} to i{self.lanes}")
         return self.value(BIT, f"icmp ne i{self.lanes} {whole.text}, 0")
 
     def bit(self, mask: Value, lane: int) -> Value:
         """The mask in one lane."""
-        return self.value(BIT, f"extractelement {self.mask} {mask.text}, i32 {lane}")
+        return self.value(BIT, f"extractelement {self.bits} {mask.text}, i32 {lane}")
 
-    def magnitude(self, x: Value) -> Value:
-        """|x| lane by lane."""
-        return self.value(self.kind, f"call {self.kind} @llvm.fabs.v{self.lanes}f64({self.kind} {x.text})")
+    def call(self, name: str, kind: str, *operands: Value) -> Value:
+        """A function of the C library, of vectors lane after lane."""
+        if kind != self.kind:
+            return super().call(name, kind, *operands)
+        if name == "sqrt":
+            return self.value(kind, f"call {kind} @llvm.sqrt.v{self.lanes}f64({kind} {operands[0].text})")
+        return self._lanewise(name, *operands)
 
-    def root(self, x: Value) -> Value:
-        """The square root lane by lane."""
-        return self.value(self.kind, f"call {self.kind} @llvm.sqrt.v{self.lanes}f64({self.kind} {x.text})")
-
-    def lanewise(self, function: str, x: Value) -> Value:
-        """A function of the C library, lane after lane."""
+    def _lanewise(self, function: str, x: Value) -> Value:
         packed = "poison"
         for lane in range(self.lanes):
             value = self.value(DOUBLE, f"extractelement {self.kind} {x.text}, i32 {lane}")
@@ -121,7 +115,7 @@ def library(code: Code, drivers: str, lanes: int) -> Library:
     scalar = SCALARS[FLOAT64]
     own = declarations([code], scalar, lanes)
     kind = vector(lanes, DOUBLE)
-    declared = [f"declare {kind} @llvm.{name}.v{lanes}f64({kind})\n" for name in ("fabs", "sqrt")]
+    declared = [f"declare {kind} @llvm.sqrt.v{lanes}f64({kind})\n"]
     declared += [f"declare double @{name}(double) #1\n" for name in ("exp", "log")]
     called = "define internal void @rhs(ptr noalias %in, ptr noalias %out) #0 {\n"
     called += f"  call void @rhs.wide(ptr %in, ptr %out, i64 {lanes})\n  ret void\n}}\n"
@@ -224,7 +218,7 @@ class _Adaptive:
         f.jump(again)
         f.place(again)
         self._emit()
-        active = f.below(self.row(Clock.NEXT), "<", f.infinity())
+        active = self.row(Clock.NEXT).compare("<", f.infinity())
         f.branch(f.anywhere(active), going, done)
         f.place(done)
         f.leave(DONE)
@@ -255,18 +249,18 @@ class _Adaptive:
     def _emit(self) -> None:
         """States at times that steps have reached, by dense output."""
         f = self.f
-        due = f.below(self.row(Clock.NEXT), "<=", self.row(Clock.TIME))
+        due = self.row(Clock.NEXT).compare("<=", self.row(Clock.TIME))
         with f.when(f.anywhere(due)):
             self._prepare()
             more, over = f.label(), f.label()
             f.jump(more)
             f.place(more)
-            due = f.below(self.row(Clock.NEXT), "<=", self.row(Clock.TIME))
+            due = self.row(Clock.NEXT).compare("<=", self.row(Clock.TIME))
             self._between((self.row(Clock.NEXT) - self.row(Clock.START)) / self.row(Clock.LAST))
             for lane in range(f.lanes):
                 with f.when(f.bit(due, lane)):
                     self._write(lane)
-            f.branch(f.anywhere(f.below(self.row(Clock.NEXT), "<=", self.row(Clock.TIME))), more, over)
+            f.branch(f.anywhere(self.row(Clock.NEXT).compare("<=", self.row(Clock.TIME))), more, over)
             f.place(over)
 
     def _prepare(self) -> None:
@@ -311,9 +305,9 @@ class _Adaptive:
     def _bury(self, active: Value, again: str) -> None:
         """Lanes whose steps have become too small are dead."""
         f = self.f
-        step, least = self.row(Clock.STEP), f.magnitude(self.row(Clock.TIME)) * _LEAST
-        low = f.select(f.below(least, ">", Fraction(1, 10**200)), least, Fraction(1, 10**200))
-        stuck = f.without(active, f.below(step, ">", low))
+        step, least = self.row(Clock.STEP), self.row(Clock.TIME).absolute() * _LEAST
+        low = f.select(least.compare(">", Fraction(1, 10**200)), least, Fraction(1, 10**200))
+        stuck = f.without(active, step.compare(">", low))
         with f.when(f.anywhere(stuck)):
             self.set(Clock.DEAD, f.select(stuck, 1, self.row(Clock.DEAD)))
             self.set(Clock.NEXT, f.select(stuck, f.infinity(), self.row(Clock.NEXT)))
@@ -325,7 +319,7 @@ class _Adaptive:
         x, time = f["x"], self.row(Clock.TIME)
         step = f.select(active, self.row(Clock.STEP), 0)
         # The last slope of an accepted step is the first of the next; it is copied late: dense output needs both.
-        fresh = f.below(self.row(Clock.FRESH), ">", 0)
+        fresh = self.row(Clock.FRESH).compare(">", 0)
         for i in f.each(self.size):
             last, first = f.load(self.kind, k, i + self.stages * self.size), f.load(self.kind, k, i)
             f.store(f.select(fresh, last, first), self.kind, k, i)
@@ -340,8 +334,8 @@ class _Adaptive:
             s.state_argument(self.candidate)
             s.evaluate(time + step, self.fresh)
             self._kept_slope(active)
-        error = self._error(step)
-        good = f.value(f.mask, f"and {f.mask} {active.text}, {f.below(error, '<=', 1).text}")
+        error = estimated(f, s, tableau, x, self.candidate, k, step, self.relative, self.absolute)
+        good = active & error.compare("<=", 1)
         bad = f.without(active, good)
         with f.when(f.anywhere(bad)):
             self._reject(bad, error, step)
@@ -356,34 +350,9 @@ class _Adaptive:
             before = f.load(self.kind, f["k"], place)
             f.store(f.select(mask, f.load(self.kind, self.fresh, i), before), self.kind, f["k"], place)
 
-    def _error(self, step: Value) -> Value:
-        """The estimated error of a step, 1 where it is just tolerable (``marching._error``)."""
-        f, s, tableau = self.f, self.s, self.tableau
-        totals = [f.slot(self.kind) for _ in tableau.errors]
-        for total in totals:
-            f.store(0, self.kind, total)
-        for i in f.each(self.size):
-            before = f.magnitude(f.load(self.kind, f["x"], i))
-            after = f.magnitude(f.load(self.kind, self.candidate, i))
-            largest = f.load(self.kind, f["sizes"], i)
-            scale = self.absolute * largest + self.relative * f.select(f.below(before, "<", after), after, before)
-            inverse = 1 / scale
-            for total, row in zip(totals, tableau.errors, strict=True):
-                value = s.combination(f["k"], row, i) * inverse
-                f.store(f.load(self.kind, total) + value * value, self.kind, total)
-        squares = [f.load(self.kind, total) for total in totals]
-        h = f.magnitude(step)
-        if len(squares) == 1:
-            return h * f.root(squares[0] / self.size)
-        bottom = (squares[0] + squares[1] * Fraction(1, 100)) * self.size
-        return h * squares[0] / f.root(f.select(f.below(bottom, "<=", 0), 1, bottom))
-
     def _reject(self, bad: Value, error: Value, step: Value) -> None:
         f = self.f
-        usable = f.below(error, "<", Fraction(10) ** 30)
-        power = f.lanewise("exp", f.lanewise("log", error) * Fraction(-1, self.tableau.order)) * Fraction(SAFETY)
-        shrink = f.select(f.below(power, ">", Fraction(SHRINKAGE)), power, Fraction(SHRINKAGE))
-        shrink = f.select(usable, shrink, Fraction(1, 10))
+        shrink, usable = shrinkage(f, self.tableau, error)
         self.set(Clock.STEP, f.select(bad, step * shrink, self.row(Clock.STEP)))
         self.set(Clock.REJECTED, self.row(Clock.REJECTED) + f.select(bad, 1, 0))
         self.set(Clock.INFINITE, f.select(bad, f.select(usable, 0, 1), self.row(Clock.INFINITE)))
@@ -396,9 +365,8 @@ class _Adaptive:
             f.store(f.select(good, before, f.load(self.kind, f["old"], i)), self.kind, f["old"], i)
             new = add_compensated(f, self.kind, x, f["carry"], i, f.load(self.kind, self.change, i))
             f.store(f.select(good, new, before), self.kind, x, i)
-            size, largest = f.magnitude(new), f.load(self.kind, f["sizes"], i)
-            larger = f.value(f.mask, f"and {f.mask} {good.text}, {f.below(largest, '<', size).text}")
-            f.store(f.select(larger, size, largest), self.kind, f["sizes"], i)
+            size, largest = new.absolute(), f.load(self.kind, f["sizes"], i)
+            f.store(f.select(good & largest.compare("<", size), size, largest), self.kind, f["sizes"], i)
             f.store(f.select(good, f.load(self.kind, f["carry"], i), carried), self.kind, f["carry"], i)
         self.set(Clock.START, f.select(good, time, self.row(Clock.START)))
         self.set(Clock.LAST, f.select(good, step, self.row(Clock.LAST)))
@@ -416,20 +384,11 @@ class _Adaptive:
         self._grow(good, error, step)
 
     def _grow(self, good: Value, error: Value, step: Value) -> None:
-        """h <- h min(6, max(1/5, 3/4 err^-a before^b)) with a = 1/q - 3b/4; no growth right after a rejected step."""
         f = self.f
-        integral = INTEGRAL[self.tableau.order]
-        alpha = Fraction(1, self.tableau.order) - integral * Fraction(3, 4)
-        floor = Fraction(1, 10**10)
-        size = f.lanewise("log", f.select(f.below(error, ">", floor), error, floor))
-        factor = f.lanewise("exp", self.row(Clock.PREVIOUS) * integral - size * alpha) * Fraction(SAFETY)
-        limit = f.select(f.below(self.row(Clock.CAREFUL), "!=", 0), 1, Fraction(GROWTH))
-        factor = f.select(f.below(factor, "<", limit), factor, limit)
-        factor = f.select(f.below(factor, ">", Fraction(SHRINKAGE)), factor, Fraction(SHRINKAGE))
+        careful = self.row(Clock.CAREFUL).compare("!=", 0)
+        factor, size = growth(f, self.tableau, error, self.row(Clock.PREVIOUS), careful)
         grown = step * factor
-        grown = f.select(f.below(grown, "<", self.longest), grown, self.longest)
+        grown = f.select(grown.compare("<", self.longest), grown, self.longest)
         self.set(Clock.STEP, f.select(good, grown, self.row(Clock.STEP)))
-        lower = Fraction(log(1e-4))
-        value = f.select(f.below(size, ">", lower), size, lower)
-        self.set(Clock.PREVIOUS, f.select(good, value, self.row(Clock.PREVIOUS)))
+        self.set(Clock.PREVIOUS, f.select(good, size, self.row(Clock.PREVIOUS)))
         self.set(Clock.CAREFUL, f.select(good, 0, self.row(Clock.CAREFUL)))

@@ -1,7 +1,8 @@
 """Which members an ensemble has: values of parameters and of the initial state, on a grid or drawn at random.
 
-A grid takes every combination of equally spaced values, ends included; draws are joint, each member one point of the
-space of all that varies, from NumPy's PCG64 or from Sobol's sequence (scrambled, SciPy), the same for the same seed.
+A grid takes every combination of equally spaced values, ends included, the last name varying fastest; draws are joint,
+each member one point of the space of all that varies, from NumPy's PCG64 or from Sobol's sequence (scrambled, SciPy).
+The points are the same for the same seed, however they are cut: chunks of a sweep are made where they are used.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
+from functools import cached_property
 from math import isfinite, prod
 from typing import Any
 
@@ -69,6 +71,56 @@ class Draw:
 
 
 Variation = Grid | Draw
+
+
+@dataclass(frozen=True)
+class Points:
+    """``variations`` are all grids, or all draws with ``members`` points in all."""
+
+    variations: tuple[Variation, ...]
+    members: int = 0
+    seed: int = 1
+    sampling: str = RANDOM
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(variation.name for variation in self.variations)
+
+    @property
+    def grids(self) -> tuple[Grid, ...]:
+        """The axes of a grid; nothing where points are drawn."""
+        return tuple(variation for variation in self.variations if isinstance(variation, Grid))
+
+    @cached_property
+    def count(self) -> int:
+        return prod(grid.count for grid in self.grids) if self.grids else self.members
+
+    def part(self, start: int, stop: int) -> Any:
+        """The points number ``start`` to ``stop`` - 1, shape (names, stop - start)."""
+        if self.grids:
+            places = np.unravel_index(np.arange(start, stop), [grid.count for grid in self.grids])
+            return np.array([grid.values[place] for grid, place in zip(self.grids, places, strict=True)])
+        chances = self._chances(start, stop)
+        draws = [variation for variation in self.variations if isinstance(variation, Draw)]
+        return np.array([draw.at(row) for draw, row in zip(draws, chances, strict=True)])
+
+    def _chances(self, start: int, stop: int) -> Any:
+        """Points of the unit cube, shape (names, stop - start)."""
+        count = len(self.variations)
+        if self.sampling == SOBOL:
+            import warnings
+
+            from scipy.stats import qmc
+
+            sequence = qmc.Sobol(count, scramble=True, rng=self.seed)
+            if start:
+                sequence.fast_forward(start)
+            with warnings.catch_warnings():  # that a number of points is no power of 2 costs some evenness, no more
+                warnings.simplefilter("ignore", UserWarning)
+                return sequence.random(stop - start).T
+        bits = np.random.PCG64(self.seed)
+        bits.advance(start * count)
+        return np.random.Generator(bits).random((stop - start, count)).T
 
 
 def variation(name: str, arguments: Sequence[float | str]) -> Variation:
@@ -180,28 +232,8 @@ def drawn(
     wrong = list(complaints_of(system, variations, members))
     if wrong:
         raise Unvaried(wrong)
-    grids = [one for one in variations if isinstance(one, Grid)]
-    if grids:
-        mesh = np.meshgrid(*(grid.values for grid in grids), indexing="ij")
-        return np.array([axis.reshape(-1) for axis in mesh])
-    draws = [one for one in variations if isinstance(one, Draw)]
-    return np.array(
-        [draw.at(row) for draw, row in zip(draws, _chances(len(draws), members or 1, seed, sampling), strict=True)]
-    )
-
-
-def _chances(count: int, members: int, seed: int, sampling: str) -> Any:
-    """Points of the unit cube, shape (count, members)."""
-    if sampling == SOBOL:
-        import warnings
-
-        from scipy.stats import qmc
-
-        with warnings.catch_warnings():  # that a number of points is no power of 2 costs some evenness, no more
-            warnings.simplefilter("ignore", UserWarning)
-            return qmc.Sobol(count, scramble=True, rng=seed).random(members).T
-    # Member by member, so that the first of 2000 are those of 1000.
-    return np.random.default_rng(seed).random((members, count)).T
+    points = Points(tuple(variations), members or 1, seed, sampling)
+    return points.part(0, points.count)
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from flint import arb, arb_mat, ctx, fmpq_mat
 
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.krawczyk import pivot_rows
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
@@ -81,7 +82,7 @@ class Kinds:
             n = self.n
             scaled = [[masses[i, j] / (self.usual[i] * self.usual[j]).sqrt() for j in range(n)] for i in range(n)]
             shown = [[moved[i, j] / row for j in range(n)] for i, row in enumerate(self.rows) if bool(row > 0)]
-            lost, hidden = n - _rank(scaled), n - _rank(shown)
+            lost, hidden = (n - len(pivot_rows([_midpoints(x) for x in rows], NOTHING)) for rows in (scaled, shown))
         if not lost:
             return OPEN
         if hidden == lost:
@@ -95,7 +96,7 @@ class Kinds:
             if any(not bool(x > 0) for x in self.usual):
                 return False
             scaled = [[masses[i, j] / (self.usual[i] * self.usual[j]).sqrt() for j in range(n)] for i in range(n)]
-            return _rank(scaled) < n
+            return len(pivot_rows([_midpoints(row) for row in scaled], NOTHING)) < n
 
     def _point(self, place: Mapping[str, Any], beside: int) -> dict[str, Any]:
         point: dict[str, Any] = {}
@@ -134,26 +135,6 @@ def _moved(scene: Scene) -> list[Node]:
 
 def _midpoints(balls: Sequence[Any]) -> list[Any]:
     return [x.mid() for x in balls]
-
-
-def _rank(rows: Sequence[Sequence[Any]]) -> int:
-    """By elimination with complete pivoting of rows of size 1; what is below ``NOTHING`` is zero."""
-    left = [[x.mid() for x in row] for row in rows]
-    rank = 0
-    while left and left[0]:
-        i, j = max(
-            ((i, j) for i in range(len(left)) for j in range(len(left[0]))),
-            key=lambda ij: float(abs(left[ij[0]][ij[1]])),
-        )
-        if not bool(abs(left[i][j]) > NOTHING):
-            break
-        pivot = left.pop(i)
-        rank += 1
-        left = [
-            [(x - row[j] / pivot[j] * y).mid() for k, (x, y) in enumerate(zip(row, pivot, strict=True)) if k != j]
-            for row in left
-        ]
-    return rank
 
 
 #: Determinants of more coordinates are not expanded, nor ones that need more steps of polynomial arithmetic.
@@ -267,7 +248,7 @@ def _told(
 def _of_determinant(ring: Ring, system: System, ranges: Mapping[str, Fraction]) -> Zeros:
     n = len(system.coordinates)
     if n > MOST_COORDINATES:
-        raise NoClosedForm(Message("a determinant of so many coordinates: [[count]]", count=n))
+        raise NoClosedForm("a determinant of so many coordinates: [[count]]", count=n)
     whole = programs(system, ring, open_tree=True)
     nodes = [x for row in whole.mass_matrix for x in row]
     entries = [ring.reduce(x) for x in whole.program.evaluate(nodes, ring_environment(system, ring), ring)]

@@ -29,11 +29,9 @@ import numpy as np
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import PRODUCT_ROUNDING, ROUNDINGS
-from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.numerics.kernels import lookup, sine_cosine, stored
-from mbsym.numerics.kernels.cells import address_of
-from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel, address_of
 from mbsym.numerics.kernels.sine_cosine import splat, vector
 
 
@@ -61,7 +59,7 @@ def constant(value: Fraction, kind: str) -> str:
         number = float("inf")
     if number in (float("inf"), float("-inf")):
         scalar = {"float": "float32", "double": "float64"}.get(kind, kind)
-        raise NoClosedForm(Message("a constant beyond the range of [[scalar]]", scalar=scalar))
+        raise NoClosedForm("a constant beyond the range of [[scalar]]", scalar=scalar)
     return f"0x{struct.unpack('<Q', struct.pack('<d', number))[0]:016X}"
 
 

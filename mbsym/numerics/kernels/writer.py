@@ -18,7 +18,7 @@ _WIDTH = {"float": 32, "double": 64, "x86_fp80": 80}
 _FLOAT = {"+": "fadd contract", "-": "fsub contract", "*": "fmul contract", "/": "fdiv contract"}
 _WHOLE = {"+": "add", "-": "sub", "*": "mul"}
 #: Comparisons that are false where an operand is not a number.
-_ORDERED = {"<": "olt", "<=": "ole", ">": "ogt", ">=": "oge", "==": "oeq"}
+_ORDERED = {"<": "olt", "<=": "ole", ">": "ogt", ">=": "oge", "==": "oeq", "!=": "one"}
 _SIGNED = {"<": "slt", "<=": "sle", ">": "sgt", ">=": "sge", "==": "eq", "!=": "ne"}
 
 #: Loops of so few rounds are written out.
@@ -65,7 +65,7 @@ class Value:
         """A bit; comparisons of floating-point numbers are false where one is not a number."""
         right = self.function.number(other, self.kind)
         operation = f"icmp {_SIGNED[sign]}" if self.kind == INTEGER else f"fcmp {_ORDERED[sign]}"
-        return self.function.value(BIT, f"{operation} {self.kind} {self.text}, {right.text}")
+        return self.function.value(self.function.mask(self.kind), f"{operation} {self.kind} {self.text}, {right.text}")
 
     def __or__(self, other: Value) -> Value:
         return self.function.value(self.kind, f"or {self.kind} {self.text}, {other.text}")
@@ -75,14 +75,15 @@ class Value:
 
     def choose(self, yes: Value, no: Value) -> Value:
         """``yes`` where this bit is set, else ``no``."""
-        return self.function.value(yes.kind, f"select i1 {self.text}, {yes.kind} {yes.text}, {no.kind} {no.text}")
+        condition = f"{self.kind} {self.text}"
+        return self.function.value(yes.kind, f"select {condition}, {yes.kind} {yes.text}, {no.kind} {no.text}")
 
     def absolute(self) -> Value:
         return (self.compare("<", 0)).choose(0 - self, self)
 
     def converted(self, kind: str) -> Value:
         """The number in another floating-point type; whole numbers become floating-point ones."""
-        if kind == self.kind:
+        if kind == self.kind or self.kind.startswith("<"):
             return self
         if self.kind == INTEGER:
             return self.function.value(kind, f"sitofp i64 {self.text} to {kind}")
@@ -91,7 +92,12 @@ class Value:
 
 
 class Function:
-    """``define i64 @name(arguments)``; pointers do not overlap.  ``arguments`` maps names to LLVM types."""
+    """``define i64 @name(arguments)``; pointers do not overlap.  ``arguments`` maps names to LLVM types.
+
+    ``real`` is the type of error estimates and of what follows from them.
+    """
+
+    real = "double"
 
     def __init__(self, name: str, arguments: Sequence[tuple[str, str]]) -> None:
         shown = ", ".join(f"ptr noalias %{arg}" if kind == POINTER else f"{kind} %{arg}" for arg, kind in arguments)
@@ -119,6 +125,10 @@ class Function:
         if isinstance(value, Value):
             return value
         return Value(self, kind, str(int(value)) if kind == INTEGER else constant(Fraction(value), kind))
+
+    def mask(self, kind: str) -> str:
+        """The type of comparisons of numbers of a type."""
+        return BIT
 
     def call(self, name: str, kind: str, *operands: Value) -> Value:
         return self.value(kind, f"call {kind} @{name}({', '.join(f'{x.kind} {x.text}' for x in operands)})")

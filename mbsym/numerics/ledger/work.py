@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 
 from flint import arb
 
-from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node
@@ -258,10 +257,5 @@ def moving_names(system: System) -> frozenset[str]:
 
 def holds(ring: Ring, x: Polynomial, name: str) -> bool:
     """Whether a parameter occurs in a polynomial: plainly, under sin and cos, or inside what is adjoined."""
-    for k in occurring([x]):
-        generator = ring.generators[k]
-        if generator.name == name and generator.kind in ("parameter", "sine", "cosine"):
-            return True
-        if generator.argument is not None and holds(ring, generator.argument, name):
-            return True
-    return False
+    held = (ring.generators[k] for k in ring.held([x]))
+    return any(g.name == name and g.kind in ("parameter", "sine", "cosine") for g in held)

@@ -198,17 +198,14 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
     if at_the_end:
         s.state_argument(candidate)
         s.evaluate(time + step, s.slope(k, stages))
-    error = _error(f, s, tableau, x, candidate, k, weight, relative, absolute)
+    error = estimated(f, s, tableau, x, candidate, k, weight, relative, absolute)
     f.store(f.load(INTEGER, count, Count.EVALUATIONS) + evaluations, INTEGER, count, Count.EVALUATIONS)
     f.jump(tried)
     f.place(tried)
     f.branch(error.compare("<=", 1), good, bad)
 
     f.place(bad)
-    usable = error.compare("<", Fraction(10) ** 30)
-    power = f.call("exp", "double", f.call("log", "double", error) * Fraction(-1, tableau.order)) * Fraction(SAFETY)
-    shrink = power.compare(">", Fraction(SHRINKAGE)).choose(power, f.number(Fraction(SHRINKAGE), "double"))
-    shrink = usable.choose(shrink, f.number(Fraction(1, 10), "double"))
+    shrink, usable = shrinkage(f, tableau, error)
     f.store(step * shrink.converted(s.clock), s.clock, clock, Clock.STEP)
     f.store(f.load(INTEGER, count, Count.REJECTED) + 1, INTEGER, count, Count.REJECTED)
     f.store(usable.choose(f.number(0, INTEGER), f.number(1, INTEGER)), INTEGER, count, Count.INFINITE)
@@ -233,7 +230,12 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
     f.store(1, INTEGER, count, Count.FRESH)
     f.store(0, INTEGER, count, Count.INFINITE)
     f.store(f.load(INTEGER, count, Count.STEPS) + 1, INTEGER, count, Count.STEPS)
-    _grow(f, s, tableau, error, step)
+    careful = f.load(INTEGER, count, Count.CAREFUL).compare("!=", 0)
+    factor, size_of_error = growth(f, tableau, error, f.load(s.clock, clock, Clock.PREVIOUS).converted(f.real), careful)
+    grown, longest = step * factor.converted(s.clock), f.load(s.clock, clock, Clock.LONGEST)
+    f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, Clock.STEP)
+    f.store(size_of_error.converted(s.clock), s.clock, clock, Clock.PREVIOUS)
+    f.store(0, INTEGER, count, Count.CAREFUL)
     if constrained:
         _note(f, near)
     f.jump(again)
@@ -298,7 +300,7 @@ def _leaving(f: Function, bit: Value, result: int) -> Iterator[None]:
     f.place(no)
 
 
-def _error(
+def estimated(
     f: Function,
     s: Stages,
     tableau: Tableau | Rosenbrock,
@@ -315,45 +317,48 @@ def _error(
     ``absolute`` L_i + ``relative`` |x_i|, the L_i being the sizes).  ``step`` is h, or 1 where estimates are those of a
     whole step.
     """
-    totals = [f.slot("double") for _ in tableau.errors]
+    totals = [f.slot(f.real) for _ in tableau.errors]
     for total in totals:
-        f.store(0, "double", total)
+        f.store(0, f.real, total)
     for i in f.each(size := s.size):
         before, after = f.load(s.kind, x, i).absolute(), f.load(s.kind, new, i).absolute()
         scale = absolute * f.load(s.kind, f["sizes"], i) + relative * before.compare("<", after).choose(after, before)
         inverse = 1 / scale
         for total, row in zip(totals, tableau.errors, strict=True):
-            value = (s.combination(k, row, i) * inverse).converted("double")
-            f.store(f.load("double", total) + value * value, "double", total)
-    squares = [f.load("double", total) for total in totals]
-    h = step.converted("double").absolute()
+            value = (s.combination(k, row, i) * inverse).converted(f.real)
+            f.store(f.load(f.real, total) + value * value, f.real, total)
+    squares = [f.load(f.real, total) for total in totals]
+    h = step.converted(f.real).absolute()
     if len(squares) == 1:
-        return h * f.call("sqrt", "double", squares[0] / size)
+        return h * f.call("sqrt", f.real, squares[0] / size)
     bottom = (squares[0] + squares[1] * Fraction(1, 100)) * size
     nothing = bottom.compare("<=", 0)
-    root = f.call("sqrt", "double", nothing.choose(f.number(1, "double"), bottom))
+    root = f.call("sqrt", f.real, nothing.choose(f.number(1, f.real), bottom))
     return h * squares[0] / root
 
 
-def _grow(f: Function, s: Stages, tableau: Tableau | Rosenbrock, error: Value, step: Value) -> None:
-    """h <- h min(6, max(1/5, 3/4 err^-a before^b)) with a = 1/q - 3b/4; no growth right after a rejected step."""
-    clock, count = f["clock"], f["count"]
+def shrinkage(f: Function, tableau: Tableau | Rosenbrock, error: Value) -> tuple[Value, Value]:
+    """What a rejected step is multiplied by, and whether its error is a usable number."""
+    usable = error.compare("<", Fraction(10) ** 30)
+    power = f.call("exp", f.real, f.call("log", f.real, error) * Fraction(-1, tableau.order)) * Fraction(SAFETY)
+    shrink = power.compare(">", Fraction(SHRINKAGE)).choose(power, f.number(Fraction(SHRINKAGE), f.real))
+    return usable.choose(shrink, f.number(Fraction(1, 10), f.real)), usable
+
+
+def growth(
+    f: Function, tableau: Tableau | Rosenbrock, error: Value, before: Value, careful: Value
+) -> tuple[Value, Value]:
+    """min(6, max(1/5, 3/4 err^-a before^b)) with a = 1/q - 3b/4, and log err, which is ``before`` the next time.
+
+    No growth right after a rejected step (``careful``).
+    """
     integral = INTEGRAL[tableau.order]
     alpha = Fraction(1, tableau.order) - integral * Fraction(3, 4)
-    floor = f.number(Fraction(1, 10**10), "double")
-    seen = error.compare(">", floor).choose(error, floor)
-    size = f.call("log", "double", seen)
-    before = f.load(s.clock, clock, Clock.PREVIOUS).converted("double")
-    factor = f.call("exp", "double", before * integral - size * alpha) * Fraction(SAFETY)
-    most = f.load(INTEGER, count, Count.CAREFUL).compare("!=", 0)
-    limit = most.choose(f.number(1, "double"), f.number(Fraction(GROWTH), "double"))
+    floor = f.number(Fraction(1, 10**10), f.real)
+    size = f.call("log", f.real, error.compare(">", floor).choose(error, floor))
+    factor = f.call("exp", f.real, before * integral - size * alpha) * Fraction(SAFETY)
+    limit = careful.choose(f.number(1, f.real), f.number(Fraction(GROWTH), f.real))
     factor = factor.compare("<", limit).choose(factor, limit)
-    least = f.number(Fraction(SHRINKAGE), "double")
+    least, lower = f.number(Fraction(SHRINKAGE), f.real), f.number(Fraction(log(1e-4)), f.real)
     factor = factor.compare(">", least).choose(factor, least)
-    grown = step * factor.converted(s.clock)
-    longest = f.load(s.clock, clock, Clock.LONGEST)
-    f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, Clock.STEP)
-    lower = f.number(Fraction(log(1e-4)), "double")
-    value = size.compare(">", lower).choose(size, lower)
-    f.store(value.converted(s.clock), s.clock, clock, Clock.PREVIOUS)
-    f.store(0, INTEGER, count, Count.CAREFUL)
+    return factor, size.compare(">", lower).choose(size, lower)

@@ -21,8 +21,7 @@ import numpy as np
 
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
-from mbsym.numerics.kernels.cells import place_of
-from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, place_of
 from mbsym.numerics.kernels.llvm import SCALARS
 from mbsym.numerics.methods.interface import (
     LARGEST,

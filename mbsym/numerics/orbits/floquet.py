@@ -41,10 +41,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from mbsym.algebra.derivative import jacobian
-from mbsym.algebra.failures import SingularPoint, message_of
+from mbsym.algebra.failures import Failure, SingularPoint, message_of
 from mbsym.algebra.program import Node
 from mbsym.algebra.rationals import ball
-from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.precise import enclosures
@@ -65,7 +64,7 @@ MOST_STEPS, MOST_STATES = 20_000, 40
 AT_REST = Fraction(1, 10**50)
 
 
-class NotPeriodic(Exception):
+class NotPeriodic(Failure):
     """There is no periodic first approximation to judge; the message says why."""
 
 
@@ -220,7 +219,7 @@ def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
         entries = substituted(jacobian.program, jacobian.outputs, fresh)
     except SingularPoint as reason:
         text = "the equations are singular on the unperturbed motion: [[why]]"
-        raise NotPeriodic(Message(text, why=message_of(reason))) from None
+        raise NotPeriodic(text, why=message_of(reason)) from None
     rests = all(fresh.vanishes(node) for node in accelerations)
     if not rests:
         _require_rest(Code(fresh, ("t",), tuple(accelerations)), dynamics)
@@ -234,13 +233,11 @@ def _require_rest(code: Code, dynamics: Dynamics) -> None:
                 size = abs(_coefficient(value, 0))
                 if not size < ball(AT_REST):
                     raise NotPeriodic(
-                        Message(
-                            "the unperturbed motion is none at these values: at t = [[time]] [[name]] has the "
-                            "acceleration [[size]]",
-                            time=f"{float(at):g}",
-                            name=name,
-                            size=f"{float(size.mid()):.3g}",
-                        )
+                        "the unperturbed motion is none at these values: at t = [[time]] [[name]] has the "
+                        "acceleration [[size]]",
+                        time=f"{float(at):g}",
+                        name=name,
+                        size=f"{float(size.mid()):.3g}",
                     )
 
 
@@ -330,20 +327,25 @@ def series(code: Code, time: arb_series) -> list[Any]:
             case "multiply", [a, b]:
                 values[number] = a * b
             case "divide", [a, b]:
-                values[number] = a / b
+                values[number] = _quotient(a, b)
             case ("sinh" | "cosh" | "tanh") as name, [a]:
                 values[number] = _hyperbolic(name, a)
             case ("sin" | "cos" | "sqrt" | "exp" | "log" | "atan") as name, [a]:
                 values[number] = getattr(a, name)()
             case name, _:
-                raise NotPeriodic(Message("[[name]] has no power series here", name=name))
+                raise NotPeriodic("[[name]] has no power series here", name=name)
     return [values[node.number] for node in code.outputs]
+
+
+def _quotient(a: arb_series, b: arb_series) -> arb_series:
+    """a/b, no finite number where b may vanish, as of balls: divided as a series it is an error."""
+    return arb_series([arb.nan()] * ctx.cap) if _coefficient(b, 0).contains(0) else a / b
 
 
 def _hyperbolic(name: str, x: arb_series) -> arb_series:
     up, down = x.exp(), (-x).exp()
     if name == "tanh":
-        return (up - down) / (up + down)
+        return _quotient(up - down, up + down)
     return (up - down) / 2 if name == "sinh" else (up + down) / 2
 
 
@@ -361,7 +363,7 @@ def enclosed(code: Code, period: arb, size: int, order: int = ORDER) -> tuple[ar
     """(a matrix of balls that contains Phi(T), how many steps were made), at the present working precision."""
     if size > MOST_STATES:
         text = "coordinates and velocities: [[count]], too many; at most [[most]]"
-        raise NotPeriodic(Message(text, count=size, most=MOST_STATES))
+        raise NotPeriodic(text, count=size, most=MOST_STATES)
     cap, ctx.cap = ctx.cap, order + 2
     try:
         steps = _steps(code, period, size)
@@ -386,11 +388,9 @@ def _steps(code: Code, period: arb, size: int) -> int:
     count = ceil(float((period * arb.max(largest, ball(fastest)) / ball(REACH)).upper()))
     if count > MOST_STEPS:
         raise NotPeriodic(
-            Message(
-                "steps that a period would take: [[count]], at most [[most]]: frequencies far apart, or a long period",
-                count=count,
-                most=MOST_STEPS,
-            )
+            "steps that a period would take: [[count]], at most [[most]]: frequencies far apart, or a long period",
+            count=count,
+            most=MOST_STEPS,
         )
     return max(count, 8)
 

@@ -3,9 +3,10 @@
     Q_k R_k = Phi(t_k, t_k-1) Q_k-1,      lambda_i(T) = 1/T sum_k log |R_k,ii|
 
 (Benettin, Galgani, Giorgilli & Strelcyn, Meccanica 15 (1980) 9).  These are numbers of a finite time: that a motion is
-chaotic is proved by none of them.  The uncertainty is that of the mean of blocks of the second half of the time, by
-Student's distribution, and how far the mean of that half is from that of the whole time (the directions need a while to
-turn where they grow most); it knows nothing of what comes later.  The sum of all exponents is checked against the mean
+chaotic is proved by none of them.  The uncertainty is that of the mean, from the slowest cosines of the second half of
+the time by Student's distribution (Lazarus, Lewis, Stock & Watson, J. Bus. Econ. Stat. 36 (2018) 541), and how much
+farther the mean of that half is from that of the whole time than chance explains (the directions need a while to turn
+where they grow most); it knows nothing of what comes later.  The sum of all exponents is checked against the mean
 divergence of the equations, which is integrated without any Q or R (Liouville).
 
 With constraints there are as many exponents as dimensions of what they allow: 2n less the independent rows on positions
@@ -28,8 +29,8 @@ from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.orbits.periodic import autonomous
 from mbsym.numerics.orbits.variational import Flow
 
-#: Blocks of the second half of the time; Student's factor for 95 % with BLOCKS - 1 degrees of freedom.
-BLOCKS, STUDENT = 16, 2.131
+#: Cosines over the second half of the time; Student's factor for 95 % with so many degrees of freedom.
+COSINES, STUDENT = 8, 2.306
 
 #: So many intervals at least.
 LEAST_INTERVALS = 64
@@ -156,18 +157,23 @@ def _directions(size: int, columns: int) -> Any:
 
 
 def _uncertainty(rates: Any, times: Any, tolerance: float) -> Any:
-    """Half the width of the 95 % interval of the mean, from blocks of the second half; nan where these are too few.
+    """Half the width of the 95 % interval of the mean over all intervals; nan where these are too few.
 
-    With it goes how far the second half's mean is from that of the whole, which is all of it where the rates are
-    constant but for a beginning, and what the tolerance of the steps lets log |R_ii| of an interval err by.
+        sigma^2 = 1/(B T) sum_j c_j^2,   c_j = sqrt(2/m) sum_i cos(j pi (i + 1/2)/m) r_i,   j = 1 .. B,
+
+    over the m rates r_i of the second half, T in intervals.  What swings quickly, as log |R_ii| does along an orbit,
+    cancels in the mean and is hardly in these; blocks would take it for chance.  Of the distance d between the means of
+    the second half and of all, chance explains sigma^2: d^2 - sigma^2, where there is more, is due to the beginning.
+    With it goes what the tolerance of the steps lets log |R_ii| of an interval err by.
     """
-    late = rates[len(rates) // 2 :]
-    if len(late) < 2 * BLOCKS:
+    late, length = rates[len(rates) // 2 :], times[0]
+    if len(rates) < LEAST_INTERVALS:
         return np.full(rates.shape[1], np.nan)
-    length = times[0]
-    blocks = np.array([np.mean(part, axis=0) / length for part in np.array_split(late, BLOCKS)])
-    turning = np.mean(late, axis=0) / length - np.mean(rates, axis=0) / length
-    return np.hypot(STUDENT * np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS), turning) + tolerance / length
+    angles = np.pi / len(late) * np.outer(np.arange(1, COSINES + 1), np.arange(len(late)) + 0.5)
+    slow = np.sqrt(2 / len(late)) * np.cos(angles) @ late
+    variance = np.mean(slow**2, axis=0) / len(rates)
+    turning = (np.mean(late, axis=0) - np.mean(rates, axis=0)) ** 2 - variance
+    return (np.sqrt(STUDENT**2 * variance + np.maximum(turning, 0)) + tolerance) / length
 
 
 def _mean_divergence(dynamics: Dynamics, starts: Any, panels: int, tolerance: float) -> float:

@@ -30,9 +30,9 @@ from mbsym.algebra.factors import rational_ratio
 from mbsym.algebra.failures import NOT_THERE, NoClosedForm
 from mbsym.algebra.signs import ContradictionError, Signs
 from mbsym.expressions.message import Message, joined
-from mbsym.expressions.tree import subtract, text
+from mbsym.expressions.tree import subtract
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
-from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Tried
+from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Gap, Tried
 from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.remarks import Remark, Said, named, said, words
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
@@ -478,11 +478,11 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
     sides = []
     for companion in together:
         assert companion.right is not None
-        about = text(subtract(companion.equals, companion.right))
+        about = subtract(companion.equals, companion.right)
         both = [companion.equals, companion.right]
         sides.append((about, [symbols.opened(side) for side in both], symbols.occurring(both), companion.relation))
 
-    def claimed(numbers: Any, values: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
+    def claimed(numbers: Any, values: Mapping[str, Any]) -> list[Gap]:
         differences = []
         for about, (left, right), occurring, relation in sides:
             lower = symbols.lowering(numbers, values, occurring)

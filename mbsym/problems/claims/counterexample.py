@@ -30,7 +30,7 @@ from mbsym.algebra.failures import NOT_THERE, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import is_number, names
+from mbsym.expressions.tree import Expression, is_number, names, text
 from mbsym.formulas.formula import Matrix
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import Programs, accelerated
@@ -56,13 +56,17 @@ WORK_OF_A_TRIAL, WORK_OF_A_LOOK = 500, 20_000
 #: Working precision of balls, in bits; a value is shown to so many digits.
 PRECISION, DIGITS_SHOWN = 256, 12
 
+#: left - right of a claimed inequality, its value, and the relation of that to zero.
+Gap = tuple[Expression, Any, str]
+
 #: Of what a verdict is shown.
 THE_MOTION = "the motion"
 
 
 @dataclass(frozen=True)
 class Counterexample:
-    """``at`` holds exact numbers by name, ``shows`` what is found there: (what, value).
+    """``at`` holds exact numbers by name, ``shows`` what is found there: (what, value), first left - right of claims
+    (``differences``).
 
     ``word`` is the verdict there, where it is asked for; ``at_equality``: both sides of the condition that was claimed
     are equal there; ``at_border``: so is a condition of problem 6.
@@ -73,6 +77,7 @@ class Counterexample:
     word: Word | None = None
     at_equality: bool = False
     at_border: bool = False
+    differences: tuple[Expression, ...] = ()
 
 
 # --- parameters ---
@@ -240,7 +245,7 @@ class Trials:
 
     def counterexample(
         self,
-        claimed: Callable[[Algebra, Mapping[str, Any]], Sequence[tuple[str, Any, str]]],
+        claimed: Callable[[Algebra, Mapping[str, Any]], Sequence[Gap]],
         sufficient: bool,
         words: Sequence[str],
         among: Iterable[Trial],
@@ -248,9 +253,9 @@ class Trials:
     ) -> Tried:
         """Parameters at which the claim is contradicted and the verdict is one of ``words``, the first if possible.
 
-        ``claimed`` gives (text, left - right, relation) of every inequality.  A necessary condition is contradicted
-        where one of them fails, sufficient ones where all hold.  Of what contradicts, points are preferred that are not
-        ``on_border`` of a condition of problem 6, then those at which no two sides are equal.
+        ``claimed`` gives (left - right, its value, relation) of every inequality.  A necessary condition is
+        contradicted where one of them fails, sufficient ones where all hold.  Of what contradicts, points are preferred
+        that are not ``on_border`` of a condition of problem 6, then those at which no two sides are equal.
         """
         judged, looked, best = 0, 0, None
         for trial in among:
@@ -281,7 +286,7 @@ class Trials:
                 break
         return Tried(None if best is None else self._shown(best[1], best[2], best[0][0]), judged)
 
-    def _shown(self, trial: Trial, gaps: Sequence[tuple[str, Any, str]], border: bool) -> Counterexample:
+    def _shown(self, trial: Trial, gaps: Sequence[Gap], border: bool) -> Counterexample:
         verdict = self.looked_into(trial)
         word = with_theorem(verdict.word, verdict.theorems)
         if Flaw.HERE in verdict.flawed:
@@ -290,8 +295,10 @@ class Trials:
                 verdict=word,
             )
         at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
-        shows = tuple((text, str(gap)) for text, gap, _ in gaps)
-        return Counterexample(at, (*shows, (THE_MOTION, word)), verdict.word, bool(gaps[0][1] == 0), border)
+        shows = tuple((text(difference), str(gap)) for difference, gap, _ in gaps)
+        differences = tuple(difference for difference, _, _ in gaps)
+        equal = bool(gaps[0][1] == 0)
+        return Counterexample(at, (*shows, (THE_MOTION, word)), verdict.word, equal, border, differences)
 
     def where_zero(self, x: Polynomial) -> Iterator[Trial]:
         """Parameters at which a polynomial in free parameters vanishes: one of them is solved for, rationally.

@@ -141,7 +141,7 @@ def _coefficient(
     reduced: Reduced = on_pair(field, root, tower.reciprocal, _size)
     j = next(j for j in range(len(positions)) if not reduced.lengths[j].is_zero())
     whole, scale = (reduced.cubic, 4) if reduced.quintic is None else (reduced.quintic, reduced.lengths[j] * 16)
-    real = (whole + tower.conjugate(whole, tower.place(root))) / 2
+    real = (whole + tower.conjugate(whole, tower.places(root.top)[0])) / 2
     return real / (reduced.lengths[j] * scale), positions[j]
 
 
@@ -167,6 +167,8 @@ def focus(expansion: Expansion) -> Focus | None:
     factor = common_factor(tower, coefficients[::2], coefficients[1::2])
     if len(factor) != 2:
         return None
+    if tower.is_positive(-factor[0]) or not tower.places(tower.square_root(-factor[0]).top):
+        return None  # two real roots of opposite signs
     coefficient, amplitude_of = _coefficient(tower, field, positions, factor[0])
     formulas = [Formula(ring, in_ring(tower, ring, x)) for x in (factor[0], coefficient)]
     return Focus(formulas[0], formulas[1], amplitude_of)

@@ -14,7 +14,6 @@ from flint import Ordering, arb, arb_poly, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, SingularPoint, message_of
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, dot, faddeev, inverted
 from mbsym.algebra.ring import Polynomial, Ring
@@ -91,13 +90,8 @@ def occurring_parameters(expansion: Expansion) -> list[str]:
     """The parameters in the coefficients, within what is adjoined as well."""
     ring = expansion.scene.ring
     parts = [*expansion.lagrangian, *(part for force in expansion.forces for part in force)]
-    pending = [x for part in parts for x in part.values()]
-    seen: set[int] = set()
-    while pending:
-        fresh = set(occurring([pending.pop()])) - seen
-        seen |= fresh
-        pending += [argument for k in fresh if (argument := ring.generators[k].argument) is not None]
-    held = [ring.generators[k] for k in sorted(seen) if ring.generators[k].argument is None]
+    within = ring.held(x for part in parts for x in part.values())
+    held = [ring.generators[k] for k in sorted(within) if ring.generators[k].argument is None]
     plain = {g.name for g in held if g.kind == "parameter"}
     names = [parameter.name for parameter in expansion.scene.system.parameters]
     angles = {g.name: g.denominator for g in held if g.kind in ("sine", "cosine") and g.name in names}
@@ -543,7 +537,7 @@ def on_curve(
     root = tower.square_root(-constant / slope)
     reduced = on_pair(field, root, tower.reciprocal, size)
     j = max(range(len(positions)), key=lambda k: size(reduced.lengths[k]))
-    real = (reduced.cubic + tower.conjugate(reduced.cubic, tower.place(root))) / 2
+    real = (reduced.cubic + tower.conjugate(reduced.cubic, tower.places(root.top)[0])) / 2
     return OnCurve(resultant, slope, coefficients[0], real / (reduced.lengths[j] * 4), positions[j])
 
 

@@ -102,10 +102,11 @@ def by_energy(
     manifold: Callable[[int], OnManifold],
     conserved: bool,
     values: Mapping[str, Fraction],
+    damping: Sequence[Sequence[Polynomial]] = (),
 ) -> Verdict | None:
     """What a minimum of V of higher order says at rational values, on the manifold that constraints leave.
 
-    None where it says nothing.  The energy does not grow; ``conserved``: it does not fall, either.
+    None where it says nothing.  The energy does not grow; ``conserved``: it does not fall, either; ``damping``: D.
     """
     made = _Expanded(scene, whole, equilibrium, False, (), manifold)
     size = len(made.plain(2).coordinates)
@@ -124,7 +125,9 @@ def by_energy(
     with ctx.workprec(PRECISION):
         flat = (key for part in made.plain(4).lagrangian for key in part)
         gyroscopic = has_forces(made.plain(4)) or any(sum(k >= size for k in key) == 1 < len(key) for key in flat)
-        return by_potential(size, derivative, field, conserved, only=True, gyroscopic=gyroscopic)
+        return by_potential(
+            size, derivative, field, conserved, True, gyroscopic, [[arb(carry(x)) for x in row] for row in damping]
+        )
 
 
 def first_terms(

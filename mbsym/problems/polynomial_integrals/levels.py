@@ -48,9 +48,14 @@ class Level:
 def levels(integrals: PolynomialIntegrals) -> tuple[Generator, ...]:
     """The integrals whose vanishing is looked at: all but norms, of which no state makes the first zero.
 
-    None where the field is not quasi-homogeneous: parts of several weights are not told apart then.
+    None where the field is not quasi-homogeneous: parts of several weights are not told apart then.  Nor where square
+    roots stand in it, of which divisions by V know nothing.
     """
-    if not integrals.grading.homogeneous or (integrals.field.relations and not integrals.grading.free):
+    if (
+        integrals.field.roots
+        or not integrals.grading.homogeneous
+        or (integrals.field.relations and not integrals.grading.free)
+    ):
         return ()
     return tuple(generator for generator in integrals.generators if not generator.by_itself and generator.name != UNITY)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
-from flint import nmod_mat
+from flint import fmpz, nmod_mat
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.matrices import Operators, PrimitiveRows
@@ -103,10 +103,17 @@ class ModularField:
 
 
 def at_random(field: PolynomialField, prime: int, seed: str = "") -> ModularField:
-    """The field at parameters modulo ``prime`` at which its denominator does not vanish."""
+    """The field at parameters modulo ``prime`` at which its denominator does not vanish.
+
+    Where it has square roots of numbers, modulo the first prime from there down (3 modulo 4) that has them, too.
+    """
     source = random.Random(f"{seed} {prime}")
+    squares = {name: int(square.leading_coefficient()) for name, square in field.roots}
+    while any(pow(square, (prime - 1) // 2, prime) != 1 for square in squares.values()):
+        prime = next(p for p in range(prime - 4 + (3 - prime) % 4, 2, -4) if fmpz(p).is_prime())
+    roots = {name: pow(square, (prime + 1) // 4, prime) for name, square in squares.items()}
     for _ in range(20):
-        numbers = {name: source.randrange(1, prime) for name in field.parameters}
+        numbers = {name: source.randrange(1, prime) for name in field.free_parameters} | roots
         modular_field = ModularField(field, prime, numbers)
         if modular_field.terms(field.denominator):
             return modular_field
@@ -339,24 +346,29 @@ def lifted(
         )
         raise NoClosedForm(message, limit=Limit.TERMS, remedy=SMALLER)
     order = [exponents for exponents in support if exponents != leading]
-    columns = [*order, leading]
-    images = [field.derivative(monomial(field, column)) for column in columns]
+    one = field.context.constant(1)
+    scalars = [one]  # a basis over the rational functions of the other parameters
+    for place in field.root_places:
+        scalars += [scalar * field.context.gen(place) for scalar in scalars]
+    columns = [monomial(field, column) * scalar for column in order for scalar in scalars]
+    columns.append(monomial(field, leading))
+    images = [field.derivative(column) for column in columns]
     if factor is not None:
-        images = [image - factor * monomial(field, column) for image, column in zip(images, columns, strict=True)]
+        images = [image - factor * column for image, column in zip(images, columns, strict=True)]
     if modulo:
         images = [field.reduced(image) for image in images]
     multiples = [monomial(field, exponents) * level for exponents in cofactor]
     equations = _equations(field, [*images[:-1], *multiples, images[-1]])
-    solved = _eliminated(field, equations, len(order) + len(multiples))
+    solved = _eliminated(field, equations, len(columns) - 1 + len(multiples))
     if solved is None:
         return None
     tops, bottoms = solved
-    common = field.context.constant(1)
+    common = one
     for bottom in bottoms:
         common = common * (bottom / bottom.gcd(common))
-    total = common * monomial(field, leading)
-    for exponents, top, bottom in zip(order, tops, bottoms, strict=False):  # those of the cofactor follow
-        total -= top * (common / bottom) * monomial(field, exponents)
+    total = common * columns[-1]
+    for column, top, bottom in zip(columns[:-1], tops, bottoms, strict=False):  # those of the cofactor follow
+        total -= top * (common / bottom) * column
     polynomial = primitive(field, total)
     rate = field.derivative(polynomial)
     if factor is not None:
@@ -402,7 +414,7 @@ def _equations(field: PolynomialField, images: Sequence[Any]) -> list[dict[int, 
     """sum_k c_k images_k = 0, coefficient by coefficient; short ones first."""
     rows: dict[Exponents, dict[int, Any]] = {}
     for k, image in enumerate(images):
-        for key, c in coefficients(field, image).items():
+        for key, c in apart(image, [*field.root_places, *field.places]).items():
             rows.setdefault(key, {})[k] = c
     return sorted(rows.values(), key=lambda row: (len(row), sum(len(x) for x in row.values())))
 

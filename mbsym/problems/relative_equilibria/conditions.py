@@ -151,20 +151,11 @@ class Conditions:
 
     def _periodic(self, name: str) -> bool:
         """Whether it occurs as an angle only: not outside of its sine and cosine, nor in a function or another sine."""
-        return self.ring.has("sine", name) and self.ring.index("coordinate", name) not in self._reached
+        return self.ring.has("sine", name) and self.ring.index("coordinate", name) not in self._held
 
     @cached_property
-    def _reached(self) -> frozenset[int]:
-        """The generators of the equations and, however deep, those that adjoined ones are made of."""
-        reached: set[int] = set()
-        pending = [*occurring(self.equations)]
-        while pending:
-            k = pending.pop()
-            if k not in reached:
-                reached.add(k)
-                argument = self.ring.generators[k].argument
-                pending += [] if argument is None else [*occurring([argument])]
-        return frozenset(reached)
+    def _held(self) -> set[int]:
+        return self.ring.held(self.equations)
 
 
 # Rest under constraints: which equations between coordinates  f + J^T lambda = 0  leaves, whatever the rank of J.
@@ -186,13 +177,15 @@ Polynomials = tuple[Polynomial, ...]
 class Case:
     """``left`` have to vanish at rest where ``zero`` vanish and ``nonzero`` do not: there J has this ``rank``.
 
-    ``pivots``: their places (row of the table that is left, constraint), one after the other.
+    ``pivots``: their places (row of the table that is left, constraint), one after the other.  ``whole``: multipliers
+    are not eliminated from ``left``, and no pivot is assumed.
     """
 
     left: Polynomials
     zero: Polynomials = ()
     nonzero: Polynomials = ()
     pivots: tuple[tuple[int, int], ...] = ()
+    whole: bool = False
 
     @property
     def rank(self) -> int:

@@ -29,8 +29,10 @@ enclosures of the roots.  Solutions that are not isolated are families.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from flint import fmpq_poly
 
@@ -39,11 +41,11 @@ from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, Sol
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Counted, Message, joined
-from mbsym.mechanics.charts import Chart, charts, with_cyclic_last_angles
+from mbsym.mechanics.charts import Chart, charts, joints, with_cyclic_last_angles
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
 from mbsym.mechanics.variables import ring_environment
-from mbsym.model.system import System
+from mbsym.model.system import System, velocity_name
 from mbsym.problems.relative_equilibria.conditions import Case, Polynomials, cases
 from mbsym.problems.relative_equilibria.listing import (
     CERTIFIED,
@@ -57,6 +59,7 @@ from mbsym.problems.relative_equilibria.listing import (
     Solution,
     groups,
 )
+from mbsym.problems.relative_equilibria.orbits import Orbits, orbits
 from mbsym.problems.relative_equilibria.oriented import orientations
 from mbsym.problems.relative_equilibria.place import (
     PRECISION,
@@ -69,6 +72,9 @@ from mbsym.problems.relative_equilibria.place import (
 )
 from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
 from mbsym.problems.stability.words import Because, Word
+
+if TYPE_CHECKING:
+    from mbsym.problems.constraints import Constraints
 
 __all__ = [
     "CERTIFIED",
@@ -85,6 +91,8 @@ __all__ = [
 
 #: The size of one interreduction under constraints (four-bars: 600,000): above this one alone may take minutes.
 REDUCTION = 4_000_000
+#: Of longer equations of steady motions along symmetries the multipliers are not eliminated, but looked for, too.
+MOST_ELIMINATED = 150
 
 
 def equilibria(
@@ -98,9 +106,12 @@ def equilibria(
 
     ``rank``: of the constraints near positions that keep them, where it is known.  Raises KeyError for a missing value,
     NoClosedForm where the equations outgrow their budget, SingularPoint, Constrained where no position keeps the
-    constraints, they contradict one another, or tie what moves.
+    constraints, they contradict one another, or tie what moves and no symmetries carry it (``orbits``).
     """
     first = rest(at_numbers(system, values))
+    if first.rows and first.tied_in_motion:
+        carried = _carried(first)
+        return _by_rates(carried, _listed(carried, first.system, within, limits or Limits(), len(carried.rows)))
     rank = rank_of(first) if rank is None else rank
     listed = _listed(first, first.system, within, limits or Limits(), rank, described_place(system, first, values))
     if listed.complete or not listed.families:
@@ -137,7 +148,14 @@ def _listed(
     families: list[EquilibriumFamily] = []
     complete = True
     uncounted: list[bool] = []
-    covering = charts(first, described_by)
+    if isinstance(first, Orbits) and (turns := joints(first.system, first.turning)):
+        text = (
+            "angles of [[bodies]] that are singular somewhere were not replaced by others: steady motions there may be "
+            "missing, and one may be listed more than once"
+        )
+        remarks.append(Message(text, bodies=", ".join(joint.body for joint in turns)))
+        complete = False
+    covering = (Chart(first, (), (), (), ()),) if isinstance(first, Orbits) else charts(first, described_by)
     limits = replace(limits, reduction=REDUCTION) if first.rows and not limits.reduction else limits
     for chart in covering:
         searches = list(searches_of(chart, limits, rank, within))
@@ -208,6 +226,54 @@ def _listed(
     )
 
 
+def _carried(first: Rest) -> Orbits:
+    """The steady motions along symmetries of a system whose constraints tie what moves.
+
+    Raises Constrained where symmetries do not carry all that moves.
+    """
+    carried = orbits(first, _constraints(first))
+    if carried is None:
+        raise Constrained(
+            "relative equilibria: constraints tie what moves ([[names]]), and no symmetries of the system that are "
+            "shifts, turns in a plane or turns about an axis carry all of it",
+            names=", ".join(first.tied_in_motion),
+            remedy="'mbsym run' judges such a motion where the description gives it",
+        )
+    return carried
+
+
+def _by_rates(carried: Orbits, listed: Equilibria) -> Equilibria:
+    """With the names of rates that follow from the constraints, in place of the letters that stood for them."""
+    rates = {name: velocity_name(name) for name in carried.following}
+
+    def called(values: Iterable[CoordinateValue]) -> tuple[CoordinateValue, ...]:
+        return tuple(replace(x, name=rates.get(x.name, x.name)) for x in values)
+
+    def written(text: str) -> str:
+        return re.sub(r"\w+", lambda word: rates.get(word[0], word[0]), text)
+
+    def named(equilibria: Iterable[RelativeEquilibrium]) -> tuple[RelativeEquilibrium, ...]:
+        return tuple(replace(x, values=called(x.values)) for x in equilibria)
+
+    families = tuple(
+        replace(
+            x, sample=called(x.sample), free=tuple(map(written, x.free)), equations=tuple(map(written, x.equations))
+        )
+        for x in listed.families
+    )
+    remarks = listed.remarks
+    if turned := sorted({carried.system.coordinates[c.place] for c in carried.symmetries if c.slopes}):
+        text = "rates are those at the moment when [[names]] is 0; the motion goes on alike in the frame that it turns"
+        remarks = (*remarks, Message(text, names=", ".join(turned)))
+    return replace(
+        listed,
+        equilibria=named(listed.equilibria),
+        singular=named(listed.singular),
+        families=families,
+        remarks=remarks,
+    )
+
+
 def rank_of(first: Rest) -> int | None:
     """How many constraints are independent near positions that keep them; None where there are none.
 
@@ -215,17 +281,21 @@ def rank_of(first: Rest) -> int | None:
     """
     if not first.rows:
         return None
-    from mbsym.problems.constraints import constraints  # most systems have none
-
     if first.tied_in_motion:
         raise Constrained(
-            "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
-            "looked for",
+            "branches of equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
+            "followed over a parameter",
             names=", ".join(first.tied_in_motion),
-            remedy="'mbsym run' judges such a motion where the description gives it",
+            remedy="'mbsym equilibria' without --vary lists the steady motions at numbers",
         )
+    return _constraints(first).velocity_rank
+
+
+def _constraints(first: Rest) -> Constraints:
+    from mbsym.problems.constraints import constraints  # most systems have none
+
     plain = first.system.without_speeds
-    return constraints(Scene(plain, first.ring, ring_environment(plain, first.ring), first.ring)).velocity_rank
+    return constraints(Scene(plain, first.ring, ring_environment(plain, first.ring), first.ring))
 
 
 def searches_of(
@@ -244,6 +314,9 @@ def searches_of(
             return False
         return there
 
+    if isinstance(chart.rest, Orbits) and sum(map(len, chart.rest.at_rest)) > MOST_ELIMINATED:
+        yield _ChartSearch(chart, within, limits, Case(tuple(chart.rest.balanced), whole=True), rank, parameters)
+        return
     for case in list(cases(chart.rest, possible)):  # all, as what is left out concerns the first, too
         search = _ChartSearch(chart, within, limits, case, rank, parameters)
         search.is_real = (case.zero, case.nonzero) in real
@@ -340,6 +413,8 @@ class _ChartSearch(SearchInBoxes):
         if not self.equations:
             self._add_free_point()
             return
+        if self.case.whole:
+            self.reason = Message("the equations are too long for their multipliers to be eliminated")
         if self.reason:
             self.remarks.append(Message("no exact solution: [[why]]", why=self.reason))
             self.unfinished = bool(self.rest.rows)  # all cases are searched at once

@@ -24,6 +24,7 @@ from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.states import SEED
 from mbsym.mechanics.symmetry import Reflection, reflections
 from mbsym.problems.relative_equilibria.conditions import Case, Conditions
+from mbsym.problems.relative_equilibria.orbits import Orbits
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
 from mbsym.problems.relative_equilibria.verdict import LinearAtRest, linear_at_rest
 from mbsym.problems.stability.verdict import Verdict, undecided
@@ -93,8 +94,9 @@ class Listing(Conditions):
 
     def _may_rest(self, place: Place) -> bool:
         """Whether no equation is proved not to vanish there: the second route of every list in balls."""
+        known = [x for x in self.equations if not self.ring.dependencies(x, self.rest.multipliers)]
         with ctx.workprec(PRECISION):
-            return all(self.ring.evaluate(x, place.balls).contains(0) for x in self.equations)
+            return all(self.ring.evaluate(x, place.balls).contains(0) for x in known)
 
     def _same(self, place: Place, other: Place) -> bool:
         """Whether two places have coordinates that balls of PRECISION bits cannot tell apart."""
@@ -199,8 +201,10 @@ class Listing(Conditions):
     def verdict(self, place: Place) -> Verdict:
         """The verdict of problem 6 at a place."""
         here, elsewhere = self.ranks
-        if elsewhere is not None and here != elsewhere:
+        if elsewhere is not None and here != elsewhere and not self.case.whole:
             return undecided(Because.RANK_LOST, here, elsewhere)
+        if isinstance(self.rest, Orbits):
+            return self.rest.first_approximation.verdict(place)
         if isinstance(self._linear, str):
             return undecided(Because.NO_EQUATIONS, self._linear)
         found = self._linear.verdict(place)
@@ -318,10 +322,12 @@ def from_many_points(
     names: Sequence[str],
     bounds: Sequence[tuple[float, float]],
     linear: Sequence[str] = (),
+    following: Sequence[str] = (),
 ) -> list[list[float]]:
     """Where damped Newton iterations from random points end, without repetition; found, not proved.
 
-    ``linear``: further unknowns, in which the equations are linear and which begin at their least squares.
+    ``linear``: further unknowns, in which the equations are linear and which begin at their least squares; so do before
+    them those of ``names`` that are ``following``, in which the equations without the linear ones are.
     """
     import numpy as np
 
@@ -331,12 +337,18 @@ def from_many_points(
     q = np.array([*(source.uniform(low, high, STARTS) for low, high in bounds), *np.zeros((len(linear), STARTS))])
     slopes = (ring.derivative(x, name) for x in equations for name in unknowns)
     value = _vectorised(ring, [*equations, *slopes], unknowns)
-    if linear:
+    rates = [k for k, name in enumerate(names) if name in following]
+    stepping = [k for k in range(bounded) if k not in rates]
+    q[rates] = 0
+    tied = [k for k, x in enumerate(equations) if not any(ring.depends_on(x, name) for name in linear)]
+    for rows, places in ((tied, rates), (range(n), range(bounded, n))):
+        if not places:
+            continue
         with np.errstate(all="ignore"):
             values = value(q)
         for at in np.flatnonzero(np.isfinite(values).all(axis=0)):
-            columns = values[n:, at].reshape(n, n)[:, bounded:]
-            q[bounded:, at] = -np.linalg.lstsq(columns, values[:n, at], rcond=None)[0]
+            columns = values[n:, at].reshape(n, n)[np.ix_(rows, places)]
+            q[places, at] = -np.linalg.lstsq(columns, values[rows, at], rcond=None)[0]
     for _ in range(60):
         with np.errstate(all="ignore"):
             values = value(q)
@@ -349,14 +361,14 @@ def from_many_points(
         scale = np.trace(normal, axis1=1, axis2=2)[:, None, None] + 1e-300
         right = np.einsum("kji,jk->ki", matrices[usable], f[:, usable])
         change[:, usable] = -np.linalg.solve(normal + scale * damping, right[..., None])[..., 0].T
-        length = np.sqrt((change[:bounded] ** 2).sum(axis=0))
+        length = np.sqrt((change[stepping] ** 2).sum(axis=0))
         q = q + change * np.minimum(1.0, 0.7 / np.maximum(length, 1e-300))
     ends: dict[tuple[float, ...], list[float]] = {}
     for k in range(STARTS):
         if usable[k] and length[k] < 1e-8:
             point = [float(x) for x in q[:, k]]
             for i, name in enumerate(names):
-                if bounds[i][1] - bounds[i][0] > 2 * math.pi * ring.angles.get(name, 10**6):
+                if i in stepping and bounds[i][1] - bounds[i][0] > 2 * math.pi * ring.angles.get(name, 10**6):
                     point[i] = turned(point[i], ring.angles[name])
             ends.setdefault(tuple(round(x, 6) for x in point), point)
     return [ends[key] for key in sorted(ends)]

@@ -132,7 +132,7 @@ class Cosines:
         """By the monomials of the other generators; None where one of these is made of the joint's angles."""
         for k in occurring([x]):
             argument = self.ring.generators[k].argument
-            if k in self.plain or (argument is not None and self.own & set(_beneath(self.ring, argument))):
+            if k in self.plain or (argument is not None and self.own & self.ring.held([argument])):
                 return None
         parts: dict[tuple[int, ...], Terms] = {}
         for monomial, coefficient in self.ring.reduce(x).terms():
@@ -153,19 +153,6 @@ class Cosines:
                 exponents = tuple(chosen.count(k) for k in range(len(entries)))
                 monomials.append((exponents, {tuple(map(int, m)): c for m, c in known[chosen].terms()}))
         return monomials
-
-
-def _beneath(ring: Ring, x: Polynomial) -> set[int]:
-    """The generators that a polynomial is made of, however deep."""
-    reached: set[int] = set()
-    pending = [*occurring([x])]
-    while pending:
-        k = pending.pop()
-        if k not in reached:
-            reached.add(k)
-            argument = ring.generators[k].argument
-            pending += [] if argument is None else [*occurring([argument])]
-    return reached
 
 
 def _combinations(basis: Sequence[Terms], targets: Sequence[Terms]) -> list[list[Any]] | None:

@@ -20,6 +20,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.rest import FARNESS
 from mbsym.problems.relative_equilibria.listing import CERTIFIED, EXACT, STARTS, Listing, from_many_points, short
+from mbsym.problems.relative_equilibria.orbits import Orbits
 from mbsym.problems.relative_equilibria.place import PRECISION, Candidate, Place, candidates, exact_rates, only_root
 
 #: Plain coordinates that no formula bounds are searched for in [-WITHIN, WITHIN], where no exact solution is possible.
@@ -133,11 +134,13 @@ def _over_boxes(
             steps.append((place, does, first, second))
         elif operation == "constant":
             assert isinstance(payload, Fraction)
-            known[place] = rationals.ball(payload)
+            with ctx.workprec(PRECISION):
+                known[place] = rationals.ball(payload)
         elif payload in unknowns:
             inputs.append((place, unknowns.index(str(payload))))
         else:
-            known[place] = arb.pi() if payload == "pi" else fixed.get(str(payload), arb(0))
+            with ctx.workprec(PRECISION):
+                known[place] = arb.pi() if payload == "pi" else fixed.get(str(payload), arb(0))
     output_places = [places[node.number] for node in outputs]
 
     def function(box: krawczyk.Box) -> list[Any]:
@@ -164,9 +167,11 @@ class SearchInBoxes(Listing):
     def search_whole(self) -> list[str]:
         """Rests wherever the constraints have their rank, of this case or another; what was left open."""
         known, self.doubts = self.doubts, []
-        square = self._with_multipliers() if self.case.nonzero else self._square_system()
+        square = self._with_multipliers() if self.case.nonzero or self.case.whole else self._square_system()
         if square is not None and square.coordinates:
-            self._search_square(square, bisect=True)
+            self._search_square(square, bisect=not self.case.whole)
+            if self.case.whole:
+                self._found_from_points()
         else:
             self._search_numerically(bisect=False)
             if not self.doubts:
@@ -209,7 +214,8 @@ class SearchInBoxes(Listing):
         elif bisect:
             self._found_from_points()
         if not self.complete or not bisect:
-            starts += from_many_points(ring, independent, names, bounds, square.multipliers)
+            following = self.rest.following if isinstance(self.rest, Orbits) else ()
+            starts += from_many_points(ring, independent, names, bounds, square.multipliers, following)
         if bisect and limited:
             reached = ((name, short(self._range(name, held.get(name))[1])) for name in limited)
             ranges = joined((Message("[[name]] within [[range]]", name=name, range=far) for name, far in reached), ", ")
@@ -223,7 +229,7 @@ class SearchInBoxes(Listing):
             else:
                 self._incomplete(Message("looked for with [[ranges]] of zero only", ranges=ranges))
         for number, start in enumerate(starts):
-            if not bisect and (self._known(start[:n], 1e-6) or self._is_excluded(start)):
+            if not bisect and (self._known(start[:n], 1e-6) or self._is_excluded(start[:n])):
                 continue
             box = krawczyk.certified(function, jacobian, start, PRECISION)
             closely = box is not None and (
@@ -331,8 +337,10 @@ class SearchInBoxes(Listing):
             or any(ring.dependencies(x, moving) for x in (*rest.balanced, *rest.kept))
         ):
             return None
+        implied = rest.implied if isinstance(rest, Orbits) else None
+        balanced = [x for i, x in enumerate(rest.balanced) if i != implied]
         forces, constraints = (
-            [x for y in of if not (x := ring.fraction(y)[0]).is_zero()] for of in (rest.balanced, rest.kept)
+            [x for y in of if not (x := ring.fraction(y)[0]).is_zero()] for of in (balanced, rest.kept)
         )
         equations = [*forces, *constraints]
         coordinates, multipliers = (
@@ -359,6 +367,8 @@ class SearchInBoxes(Listing):
             turn = math.pi * self.ring.angles[name]
             return -turn - 0.0123, turn + 0.0171
         farthest = self.within if held is None else held
+        if held is None and isinstance(self.rest, Orbits) and name in self.rest.following:
+            farthest = self.rest.fastest(self.within)
         return -farthest - 0.00123, farthest + 0.00171
 
 

@@ -107,7 +107,8 @@ class LinearAtRest:
             ring.is_zero(x) is not True for x in (*by_velocities, *(x for row in self.matrices[2] for x in row))
         )
         conserved, only = self.law is EnergyLaw.CONSERVED, len(remaining) == len(names)
-        verdict = by_potential(len(remaining), derivative, field, conserved, only, gyroscopic)
+        damping = [[place.ball(self.matrices[1][i][j]) for j in remaining] for i in remaining]
+        verdict = by_potential(len(remaining), derivative, field, conserved, only, gyroscopic, damping)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
 
     @property
@@ -160,17 +161,15 @@ class LinearAtRest:
             try:
                 parts = [[[look(x) for x in row] for row in rows_] for rows_ in self.matrices]
                 jacobian = [[look(x) for x in row.partials] for row in self.rest.rows]
-                table = [
-                    [*column, -look(f)]
-                    for column, f in zip(zip(*jacobian, strict=True), self.rest.at_rest, strict=True)
-                ]
+                acting = [look(f) for f in self.rest.at_rest]
                 bends = [[[look(x) for x in line] for line in bend] for bend in self.bends]
-                if any(x is None for rows_ in (*parts, jacobian, table, *bends) for row in rows_ for x in row):
+                if any(x is None for rows_ in (*parts, jacobian, [acting], *bends) for row in rows_ for x in row):
                     return undecided(Because.NOT_ENCLOSED)
+                table = [[*column, -f] for column, f in zip(zip(*jacobian, strict=True), acting, strict=True)]
                 columns = list(range(n))
                 weigh: dict[str, Any] = {}
                 if place.modulus is None:  # balls: what may be 0 divides nothing
-                    weigh = {"weight": _smallness}
+                    weigh = {"weight": smallness}
                     first = pivot_rows([[float(x.mid()) for x in row[:-1]] for row in table])
                     columns = [*first, *(k for k in columns if k not in first)]
                     table = [table[k] for k in columns]
@@ -223,7 +222,7 @@ class LinearAtRest:
         return None if residue is None or residue.degree() > 0 else residue[0]
 
 
-def _smallness(x: Any) -> int | None:
+def smallness(x: Any) -> int | None:
     """How small a ball is, of what may be 0 more than of all others; None of an exact 0."""
     if x.is_zero():
         return None

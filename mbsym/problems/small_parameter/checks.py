@@ -10,7 +10,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.algebra.tower import MOST_ROOTS, Element
-from mbsym.problems.small_parameter.result import Harmonics, Oscillation, ScaledField
+from mbsym.problems.small_parameter.result import Harmonics, Oscillation, Phase, ScaledField, multiples
 
 #: Numerators and denominators of the random states.
 _SIZE = 40
@@ -88,7 +88,8 @@ def _value(x: Quotient, at: Sequence[fmpq]) -> fmpq:
     return x.top(*at) / x.bottom(*at)
 
 
-# The second route of oscillations: the series put whole into the equations, with polynomials in eps, cos T and sin T.
+# The second route of oscillations: the series put whole into the equations, with polynomials in eps, and in the cosine
+# and sine of every phase.
 #
 # Parameters are random rationals; square roots, sin T and cos T are generators of a polynomial ring over QQ with their
 # relations, and everything is multiplied out exactly.  Nothing of the way by which the series were found is used.
@@ -99,16 +100,18 @@ MOST_SEEDS = 8
 
 
 class Numbers:
-    """Elements of a tower at random rational parameters, in QQ[roots][eps, s, c] modulo the relations."""
+    """Elements of a tower at random rational parameters, in QQ[roots][eps, s, c, ...] modulo the relations."""
 
     def __init__(self, found: Oscillation, seed: int) -> None:
         self.tower, random = found.tower, Random(seed)
         names = [f"r{k}" for k in reversed(range(len(self.tower.squares)))]
-        self.context: Any = fmpq_mpoly_ctx.get([*names, "eps", "s", "c"], Ordering.lex)
+        waves = [f"{wave}{k}" for k in range(len(found.phases)) for wave in "sc"]
+        self.context: Any = fmpq_mpoly_ctx.get([*names, "eps", *waves], Ordering.lex)
         gens = self.context.gens()
-        self.roots, (self.eps, self.sine, self.cosine) = gens[: len(names)][::-1], gens[len(names) :]
+        self.roots, (self.eps, *turning) = gens[: len(names)][::-1], gens[len(names) :]
+        self.phases = list(zip(turning[::2], turning[1::2], strict=True))  # sines and cosines
         self.values = [fmpq(random.randint(2, _SMALL), random.randint(2, _SMALL)) for _ in self.tower.parameters]
-        self.relations = [self.sine**2 + self.cosine**2 - 1]
+        self.relations = [sine**2 + cosine**2 - 1 for sine, cosine in self.phases]
         for root, square in zip(self.roots, self.tower.squares, strict=True):
             self.relations.append(root**2 - self._of(square))
 
@@ -127,20 +130,27 @@ class Numbers:
         return self.reduced(self._of(x.top)) / bottom.leading_coefficient()
 
     def wave(self, harmonics: Harmonics) -> Any:
-        """cos k T = T_k(c), sin k T = s U_(k-1)(c)."""
+        """cos k T = T_k(c), sin k T = s U_(k-1)(c), and those of sums of such."""
         total = self.context.constant(0)
         for k, (c, s) in harmonics.waves.items():
-            first, second = _chebyshev(self.context.constant(1), self.cosine, k)
-            total = total + self(c) * first + self(s) * self.sine * second
-        return total
+            even, odd = self.context.constant(1), self.context.constant(0)
+            for turns, (sine, cosine) in zip(multiples(k, len(self.phases)), self.phases, strict=True):
+                first, second = _chebyshev(self.context.constant(1), cosine, abs(turns))
+                second = second * sine * (1 if turns > 0 else -1)
+                even, odd = even * first - odd * second, odd * first + even * second
+            total = total + self(c) * even + self(s) * odd
+        return self.reduced(total)
 
     def series(self, parts: Sequence[Harmonics]) -> Any:
         return sum((self.wave(part) * self.eps**n for n, part in enumerate(parts)), self.context.constant(0))
 
-    def slope(self, p: Any) -> Any:
-        """d/dT."""
-        place = len(self.roots) + 1
-        return p.derivative(place) * self.cosine - p.derivative(place + 1) * self.sine
+    def slope(self, p: Any, speeds: Sequence[Any]) -> Any:
+        """sum of T_j' dp/dT_j."""
+        total = self.context.constant(0)
+        for k, (speed, (sine, cosine)) in enumerate(zip(speeds, self.phases, strict=True)):
+            place = len(self.roots) + 1 + 2 * k
+            total = total + (p.derivative(place) * cosine - p.derivative(place + 1) * sine) * speed
+        return total
 
 
 def _chebyshev(unit: Any, x: Any, k: int) -> tuple[Any, Any]:
@@ -155,11 +165,11 @@ def _chebyshev(unit: Any, x: Any, k: int) -> tuple[Any, Any]:
 def oscillation_orders(
     rows: Any, names: Sequence[str], oscillation: Oscillation, seed: int = 1
 ) -> tuple[int | None, ...]:
-    """The lowest order of eps in f(X) - omega (1 + eps nu_1 + ...) X'(T) for each variable of the solution, then its
-    drifting ones.  None: nothing is left."""
+    """The lowest order of eps in f(X) - sum_j omega_j (1 + eps nu_j1 + ...) dX/dT_j for each variable of the solution,
+    then its drifting ones.  None: nothing is left."""
     try:
         numbers = Numbers(oscillation, seed)
-        speed = _speed(numbers, oscillation)
+        speeds = [_speed(numbers, phase) for phase in oscillation.phases]
         series = _all_series(numbers, oscillation)
     except ZeroDivisionError:  # a denominator vanishes at these numbers
         if seed > MOST_SEEDS:
@@ -180,7 +190,7 @@ def oscillation_orders(
 
     result: list[int | None] = []
     for name in (*oscillation.names, *rates):
-        left = numbers.slope(series[name]) * speed + rates.get(name, 0)
+        left = numbers.slope(series[name], speeds) + rates.get(name, 0)
         for k, terms in rows[names.index(name)].items():
             for exponents, c in terms.items():
                 term = numbers(c) * eps**k
@@ -194,11 +204,11 @@ def oscillation_orders(
     return tuple(result)
 
 
-def _speed(numbers: Numbers, oscillation: Oscillation) -> Any:
+def _speed(numbers: Numbers, phase: Phase) -> Any:
     """omega (1 + eps nu_1 + ...)."""
     zero = numbers.context.constant(0)
-    shifts = sum((numbers(x) * numbers.eps ** (k + 1) for k, x in enumerate(oscillation.corrections)), zero)
-    return numbers(oscillation.frequency) * (1 + shifts)
+    shifts = sum((numbers(x) * numbers.eps ** (k + 1) for k, x in enumerate(phase.corrections)), zero)
+    return numbers(phase.frequency) * (1 + shifts)
 
 
 def _all_series(numbers: Numbers, oscillation: Oscillation) -> dict[str, Any]:

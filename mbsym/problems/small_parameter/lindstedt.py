@@ -1,6 +1,8 @@
-"""Periodic solutions of quasi-linear equations by Poincare's and Lindstedt's method, exactly.
+"""Oscillations of quasi-linear equations by Poincare's and Lindstedt's method, exactly.
 
     x = X_0(T) + eps X_1(T) + ...,       dT/dt = omega (1 + eps nu_1 + eps^2 nu_2 + ...),       X_n of period 2 pi in T
+
+with one phase T, or several, each with its omega and nu.
 
 In the order n, with G_n from lower orders, constant variables c and the others z
 
@@ -8,7 +10,8 @@ In the order n, with G_n from lower orders, constant variables c and the others 
 
 The mean of G_n must vanish in the equations of c.  At the harmonic k the equations of z are (i k omega - A) Z = G;
 where k omega is a frequency of the linear system they have a solution for special G only: nu_n and conditions on the
-amplitude follow from the leading block at k = 1, anything else is a resonance.  (A. Nayfeh, Perturbation methods,
+amplitude follow from the leading block at k = 1, anything else is a resonance.  Of several phases k omega is  sum_j k_j
+omega_j, and each has its leading block.  (A. Nayfeh, Perturbation methods,
 Wiley 1973, section 3.1; I. Malkin, Some problems in the theory of nonlinear oscillations, chapter II.)
 """
 
@@ -18,12 +21,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import NoClosedForm, SingularPoint
 from mbsym.algebra.matrices import echelon, faddeev
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.generating import Generating, Mode, without_zeros
-from mbsym.problems.small_parameter.result import Divisor, Drift, Harmonics
+from mbsym.problems.small_parameter.result import APART, Divisor, Drift, Harmonics, multiples, speed_of
 
 
 class Resonance(NoClosedForm):
@@ -45,26 +48,20 @@ class Demand(Exception):
         self.condition, self.order = condition, order
 
 
-@dataclass
-class Orders:
-    """The solution order by order; ``corrections`` are the symbols of unknown terms of the amplitude, if any."""
+@dataclass(eq=False)
+class Led:
+    """A phase: the ``mode`` that turns with it, the ``leading`` variable, its ``amplitude``, and nu_1, nu_2, ..."""
 
     system: Generating
     mode: Mode
     leading: int
     amplitude: Element
-    constants: dict[int, Element]
-    corrections: Sequence[str] = ()
-    series: list[list[Harmonics]] = field(default_factory=list)
     shifts: list[Element] = field(default_factory=list)
-    divisors: list[Divisor] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        tower = self.tower = self.system.tower
+        tower = self.system.tower
         self.frequency = tower.square_root(self.mode.square)
-        self.nothing = Harmonics(tower, {})
-        self.products: dict[tuple[tuple[int, ...], int], Harmonics] = {}
-        matrix = self.system.block_matrix(self.mode.block)
+        self.matrix = matrix = self.system.block_matrix(self.mode.block)
         adjugates = faddeev(matrix, tower.zero, tower.one)[0]
         size = len(matrix)
         real, imaginary = _at_imaginary(tower, adjugates, self.frequency)
@@ -78,7 +75,24 @@ class Orders:
         #: v with (i omega - A) v = 0 and v = 1 in the leading variable; l with l (i omega - A) = 0.
         self.right = [_over(tower, (real[r][column], imaginary[r][column]), entry) for r in range(size)]
         self.left = [(real[place][c], imaginary[place][c]) for c in range(size)]
-        self.matrix = matrix
+
+
+@dataclass
+class Orders:
+    """The solution order by order; ``corrections`` are the symbols of unknown terms of the amplitude, if any."""
+
+    system: Generating
+    phases: Sequence[Led]
+    constants: dict[int, Element]
+    corrections: Sequence[str] = ()
+    series: list[list[Harmonics]] = field(default_factory=list)
+    divisors: list[Divisor] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        tower = self.tower = self.system.tower
+        self.frequencies = [led.frequency for led in self.phases]
+        self.nothing = Harmonics(tower, {})
+        self.products: dict[tuple[tuple[int, ...], int], Harmonics] = {}
         self._generating()
 
     # --- what the field is along the series ---
@@ -114,9 +128,10 @@ class Orders:
 
     def forcing(self, i: int, order: int) -> Harmonics:
         total = self.right_side(i, order)
-        for j, shift in enumerate(self.shifts[:order], start=1):
-            if not shift.is_zero():
-                total = total - self.series[i][order - j].slope().scaled(shift * self.frequency)
+        for place, led in enumerate(self.phases):
+            for j, shift in enumerate(led.shifts[:order], start=1):
+                if not shift.is_zero():
+                    total = total - self.series[i][order - j].slope(place).scaled(shift * led.frequency)
         return total
 
     # --- orders ---
@@ -131,10 +146,11 @@ class Orders:
             forcing = [self.forcing(i, 0) for i in block]
             for i, harmonics in zip(block, self._answer(block, forcing, 0), strict=True):
                 self.series[i][0] = harmonics
-            if block == self.mode.block:
-                for i, (c, s) in zip(block, self.right, strict=True):
-                    wave = Harmonics(tower, {1: (c * self.amplitude, -(s * self.amplitude))})
-                    self.series[i][0] = self.series[i][0] + wave
+            for place, led in enumerate(self.phases):
+                if block == led.mode.block:
+                    for i, (c, s) in zip(block, led.right, strict=True):
+                        wave = Harmonics(tower, {APART**place: (c * led.amplitude, -(s * led.amplitude))})
+                        self.series[i][0] = self.series[i][0] + wave
         self.complete = 1
         self.products.clear()
 
@@ -147,10 +163,26 @@ class Orders:
             slope = self.forcing(i, order)
             if not slope.mean.is_zero():
                 raise Demand(slope.mean, order)
-            self.series[i][order] = slope.sum_from_zero().scaled(self.tower.reciprocal(self.frequency))
+            try:
+                self.series[i][order] = slope.integral(self.frequencies)
+            except SingularPoint:
+                raise Resonance(
+                    "resonance: in the order [[order]] of the small parameter [[name]] is driven at a sum of multiples "
+                    "of the frequencies that is zero",
+                    order=order,
+                    name=system.names[i],
+                ) from None
+            self._integrated(i, slope, order)
         for block in system.blocks:
             forcing = [self.forcing(i, order) for i in block]
-            answer = self._led(forcing, order) if block == self.mode.block else self._answer(block, forcing, order)
+            own = {APART**place: led for place, led in enumerate(self.phases) if block == led.mode.block}
+            rest = [
+                Harmonics(self.tower, {k: wave for k, wave in harmonics.waves.items() if k not in own})
+                for harmonics in forcing
+            ]
+            answer = self._answer(block, rest, order)
+            for k, led in own.items():
+                answer = self._led(led, k, forcing, answer, order)
             for i, harmonics in zip(block, answer, strict=True):
                 self.series[i][order] = harmonics
         self.complete = order + 1
@@ -170,7 +202,7 @@ class Orders:
         """k omega S = A C + F_c,  -k omega C = A S + F_s."""
         tower, size, zero = self.tower, len(block), self.tower.zero
         matrix = self.system.block_matrix(block)
-        speed = self.frequency * k
+        speed = speed_of(k, self.frequencies)
         if k == 0:
             right = [-c for c, _ in forcing]
             answer = solved(tower, matrix, right)
@@ -181,74 +213,95 @@ class Orders:
             answer = solved(tower, [*upper, *lower], right)
         names = tuple(self.system.names[i] for i in block)
         if answer is None:
-            raise Resonance(_driven(names, k, order))
+            raise Resonance(_driven(names, k, order, len(self.phases)))
         self._divided(block, k, order, answer)
         return answer[:size], answer[size:] or [zero] * size
 
     def _divided(self, block: tuple[int, ...], k: int, order: int, answer: Sequence[Element]) -> None:
         """Notes chi(i k omega), chi the characteristic polynomial of a block; chi(0) without roots zero.
 
-        Of the block that oscillates by itself, chi without lambda^2 + omega^2; nothing where no denominator of the
-        ``answer`` shares a factor with it (normal oscillations that the force does not couple).
+        Of a block that oscillates by itself, chi without lambda^2 + omega^2 at the multiples of that omega; nothing
+        where no denominator of the ``answer`` shares a factor with it (oscillations that the force does not couple).
         """
         tower, names = self.tower, tuple(self.system.names[i] for i in block)
         polynomial = faddeev(self.system.block_matrix(block), tower.zero, tower.one)[1]
-        if block == self.mode.block:
-            polynomial = _without(polynomial, self.mode.square)
-        square = -(self.mode.square * (k * k))
+        turns, own = multiples(k, len(self.phases)), [led for led in self.phases if led.mode.block == block]
+        for place, led in enumerate(self.phases):
+            if led in own and not any((*turns[:place], *turns[place + 1 :])):
+                polynomial = _without(polynomial, led.mode.square)
+        speed = speed_of(k, self.frequencies)
+        square = -(speed * speed)
         parts = [without_zeros(polynomial)[0]]
-        if k:  # chi(i k omega) = parts[0] + i k omega parts[1]
-            parts = [_at(tower, polynomial[first::2], square) for first in range(2)]
+        if k:  # chi(i k omega) = parts[0] + i k omega parts[1], of one phase k omega != 0
+            even, odd = (_at(tower, polynomial[first::2], square) for first in range(2))
+            parts = [even, odd * speed if sum(map(bool, turns)) > 1 else odd]
         parts = [x for x in parts if not x.is_zero()]
         if any(divisor.variables == names and divisor.harmonic == k for divisor in self.divisors):
             return
         if not parts or any(self._is_multiple(x, len(block)) for x in parts):
             return  # of multiples of the frequency itself it is said already that they are not zero
         whole = parts[0] if len(parts) == 1 else parts[0] * parts[0] - square * parts[1] * parts[1]
-        if block == self.mode.block and _cancelled(whole, answer):
+        if own and _cancelled(whole, answer):
             return
         self.divisors.append(Divisor(names, k, order, *parts))
 
+    def _integrated(self, i: int, slope: Harmonics, order: int) -> None:
+        """Notes the sums of multiples of several frequencies by which an integral over the time divides."""
+        for k in slope.waves:
+            if sum(map(bool, multiples(k, len(self.phases)))) > 1:
+                self._note(Divisor((self.system.names[i],), k, order, speed_of(k, self.frequencies)))
+
+    def _note(self, divisor: Divisor) -> None:
+        """Once of each harmonic and variables; of numbers there is nothing to say."""
+        known = {(other.variables, other.harmonic) for other in self.divisors}
+        if (divisor.variables, divisor.harmonic) not in known and self.tower.rational(divisor.value) is None:
+            self.divisors.append(divisor)
+
     def _is_multiple(self, x: Element, most: int) -> bool:
-        """Whether it is a number, or one times a power of omega^2."""
-        for _ in range(most // 2 + 1):
-            if self.tower.rational(x) is not None:
-                return True
-            x = x / self.mode.square
+        """Whether it is a number, or one times a power of an omega^2."""
+        for led in self.phases:
+            y = x
+            for _ in range(most // 2 + 1):
+                if self.tower.rational(y) is not None:
+                    return True
+                y = y / led.mode.square
         return False
 
-    def _led(self, forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
-        """The block that oscillates by itself: its frequency is corrected, its amplitude may be determined."""
-        tower, block, size = self.tower, self.mode.block, len(self.mode.block)
-        rest = [Harmonics(tower, {k: wave for k, wave in harmonics.waves.items() if k != 1}) for harmonics in forcing]
-        oscillations = self._answer(block, rest, order)
+    def _led(
+        self, led: Led, k: int, forcing: Sequence[Harmonics], forced: Sequence[Harmonics], order: int
+    ) -> list[Harmonics]:
+        """What oscillates by itself, with the wave number k, added to what is ``forced``.
+
+        Its frequency is corrected, its amplitude may be determined.
+        """
+        tower, block, size, oscillations = self.tower, led.mode.block, len(led.mode.block), list(forced)
         # l G = i omega nu a (l v), G = F_c - i F_s.
         top = bottom = (tower.zero, tower.zero)
-        for l, harmonics, v in zip(self.left, forcing, self.right, strict=True):
-            c, s = harmonics.wave(1)
+        for l, harmonics, v in zip(led.left, forcing, led.right, strict=True):
+            c, s = harmonics.wave(k)
             top = _sum(top, _times(l, (c, -s)))
             bottom = _sum(bottom, _times(l, v))
         real, imaginary = _over(tower, top, bottom)
-        back = tower.reciprocal(self.amplitude)
+        back = tower.reciprocal(led.amplitude)
         if not real.is_zero():
             raise Demand(real * back, order)
-        shift = imaginary * tower.reciprocal(self.frequency) * back
-        self.shifts.append(shift)
+        shift = imaginary * tower.reciprocal(led.frequency) * back
+        led.shifts.append(shift)
         # What is left has solutions; the one without the leading variable is taken.
-        speed, zero, place = self.frequency, tower.zero, block.index(self.leading)
+        speed, zero, place = led.frequency, tower.zero, block.index(led.leading)
+        turned = shift * speed * led.amplitude
         loads = []
-        for harmonics, (c, s) in zip(forcing, self.right, strict=True):
-            a, b = harmonics.wave(1)
-            own = Harmonics(tower, {1: (c * self.amplitude, -(s * self.amplitude))}).slope().wave(1)
-            loads.append((a - own[0] * shift * speed, b - own[1] * shift * speed))
+        for harmonics, (c, s) in zip(forcing, led.right, strict=True):
+            a, b = harmonics.wave(k)
+            loads.append((a + s * turned, b + c * turned))  # - nu omega d/dT of a (c cos T - s sin T)
         others = [j for j in range(size) if j != place]
         upper = [
             [*(row[j] for j in others), *(-speed if i == j else zero for j in others)]
-            for i, row in enumerate(self.matrix)
+            for i, row in enumerate(led.matrix)
         ]
         lower = [
             [*(speed if i == j else zero for j in others), *(row[j] for j in others)]
-            for i, row in enumerate(self.matrix)
+            for i, row in enumerate(led.matrix)
         ]
         answer = solved(tower, [*upper, *lower], [*(-c for c, _ in loads), *(-s for _, s in loads)])
         if answer is None:
@@ -256,14 +309,16 @@ class Orders:
                 "resonance: two oscillations of [[block]] have one frequency",
                 block=", ".join(self.system.names[i] for i in block),
             )
-        self._divided(block, 1, order, [*answer, shift])
+        self._divided(block, k, order, [*answer, shift])
         known = [(zero, zero)] * size
         for n, j in enumerate(others):
             known[j] = (answer[n], answer[len(others) + n])
-        correction = tower.parameter(self.corrections[order - 1]) if self.corrections else -oscillations[place].start
-        for j, (c, s) in enumerate(self.right):
+        correction = -oscillations[place].start if len(self.phases) == 1 else zero
+        if self.corrections:
+            correction = tower.parameter(self.corrections[order - 1])
+        for j, (c, s) in enumerate(led.right):
             wave = (known[j][0] + c * correction, known[j][1] - s * correction)
-            oscillations[j] = oscillations[j] + Harmonics(tower, {1: wave})
+            oscillations[j] = oscillations[j] + Harmonics(tower, {k: wave})
         return oscillations
 
     def quadratures(self, order: int) -> list[Drift]:
@@ -276,7 +331,11 @@ class Orders:
                 drifting.add(i)
                 continue
             slopes = [self.right_side(i, n) for n in range(order + 1)]
-            drift = integrated(self.system.names[i], slopes, self.frequency, self.shifts)
+            for n, slope in enumerate(slopes):
+                self._integrated(i, slope, n)
+            drift = integrated(
+                self.system.names[i], slopes, self.frequencies, [tuple(led.shifts[:order]) for led in self.phases]
+            )
             self.series[i] = list(drift.waves)
             if any(not x.is_zero() for x in drift.rates):
                 drifting.add(i)
@@ -284,21 +343,27 @@ class Orders:
         return drifts
 
 
-def integrated(name: str, slopes: Sequence[Harmonics], frequency: Element, shifts: Sequence[Element]) -> Drift:
-    """The integral over the time of  sum_n eps^n slopes[n](T),  T' = frequency (1 + sum_n eps^n shifts[n - 1])."""
-    tower = frequency.tower
+def integrated(
+    name: str, slopes: Sequence[Harmonics], frequencies: Sequence[Element], shifts: Sequence[Sequence[Element]]
+) -> Drift:
+    """The integral over the time of  sum_n eps^n slopes[n](T),  T_j' = frequencies_j (1 + sum_n eps^n shifts_j[n - 1]).
+
+    Raises SingularPoint where a sum of multiples of the frequencies is zero.
+    """
+    tower = frequencies[0].tower
     rates: list[Element] = []
     waves: list[Harmonics] = []
     for n, slope in enumerate(slopes):
-        for j, shift in enumerate(shifts[:n], start=1):
-            slope = slope - waves[n - j].slope().scaled(shift * frequency)
+        for place, own in enumerate(shifts):
+            for j, shift in enumerate(own[:n], start=1):
+                slope = slope - waves[n - j].slope(place).scaled(shift * frequencies[place])
         rates.append(slope.mean)
         rest = slope - Harmonics.constant(tower, slope.mean)
-        waves.append(rest.sum_from_zero().scaled(tower.reciprocal(frequency)))
+        waves.append(rest.integral(frequencies))
     return Drift(name, tuple(rates), tuple(waves))
 
 
-def _driven(names: Sequence[str], k: int, order: int) -> str:
+def _driven(names: Sequence[str], k: int, order: int, phases: int) -> str:
     """Why a forced oscillation, or a forced displacement (k = 0), does not exist."""
     where = Message(
         "resonance: in the order [[order]] of the small parameter, [[names]] are driven",
@@ -312,6 +377,10 @@ def _driven(names: Sequence[str], k: int, order: int) -> str:
             where=where,
         )
     message = Message("[[k]] times the frequency", k=k) if k > 1 else Message("the frequency")
+    if phases > 1:
+        message = Message(
+            "the sum of the multiples [[turns]] of the frequencies", turns=", ".join(map(str, multiples(k, phases)))
+        )
     return Message(
         "[[where]] at [[told]], which is a frequency of their own: secular terms are not removed; "
         "solutions in which these oscillate by themselves from the beginning are not looked for",

@@ -1,8 +1,9 @@
 """Poincare's and Lindstedt's method from the graded equations to a result: amplitudes found, everything checked.
 
-Periodic solutions are a family with a free amplitude, or secular terms leave in some order m a condition P(a) = 0;
-then the corrections of the amplitude follow from the orders m + 1, m + 2, ..., in which they stand linearly.  One of
-the real roots a != 0 of P is taken; the others, and factors of P that square roots do not solve, are named.
+Of several phases all amplitudes are free, or there is no result.  Periodic solutions are a family with a free
+amplitude, or secular terms leave in some order m a condition P(a) = 0; then the corrections of the amplitude follow
+from the orders m + 1, m + 2, ..., in which they stand linearly.  One of the real roots a != 0 of P is taken; the
+others, and factors of P that square roots do not solve, are named.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.small_parameter.checks import oscillation_orders
 from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
-from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
-from mbsym.problems.small_parameter.result import Amplitude, Harmonics, Oscillation
+from mbsym.problems.small_parameter.lindstedt import Demand, Led, NotPeriodic, Orders
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics, Oscillation, Phase
 
 #: A condition on the amplitude may first appear in this order.
 LATEST = 4
@@ -28,17 +29,25 @@ LATEST = 4
 AMPLITUDE = "#amplitude"
 
 
+def amplitude_symbol(place: int) -> str:
+    """Of the phase with that place: the first is ``AMPLITUDE``."""
+    return AMPLITUDE if not place else f"{AMPLITUDE} of {place}"
+
+
 def correction_names(order: int) -> tuple[str, ...]:
     """Symbols of unknown terms of the amplitude, which no result holds."""
     return tuple(f"#amplitude {k}" for k in range(1, order + LATEST + 1))
 
 
-def tower_over(parameters: Sequence[str], variables: Sequence[str], order: int, others: Sequence[str] = ()) -> Tower:
-    """Parameters, the amplitude and its corrections, a constant value ``#x`` of every variable x.
+def tower_over(
+    parameters: Sequence[str], variables: Sequence[str], order: int, others: Sequence[str] = (), phases: int = 1
+) -> Tower:
+    """Parameters, the amplitudes, corrections of one, a constant value ``#x`` of every variable x.
 
     ``others``: parameters that no equation holds, for what results are compared with.
     """
-    return Tower((*parameters, AMPLITUDE, *(f"#{name}" for name in variables), *correction_names(order), *others))
+    amplitudes = map(amplitude_symbol, range(phases))
+    return Tower((*parameters, *amplitudes, *(f"#{name}" for name in variables), *correction_names(order), *others))
 
 
 def _together(names: Sequence[str], frequencies: int) -> str:
@@ -57,7 +66,8 @@ class ModeIsOpen(NoClosedForm):
         counts = Counter(self.blocks)
         message = joined((_together(block, n) for block, n in counts.items()), "; ")
         remedy = Message(
-            "name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter"
+            "name a variable whose oscillation leads, or several, of which each does: --of NAME,NAME, or "
+            "'leading: NAME' under the small parameter"
         )
         if max(counts.values(), default=0) > 1:
             which = Message("say which of the frequencies that variables share: --frequency K")
@@ -72,7 +82,7 @@ class ModeIsOpen(NoClosedForm):
 class Equations:
     """x' = sum_k eps^k rows[k](x) over a tower, known up to eps^most; ``told`` writes an element for a person.
 
-    ``values``: numbers for the amplitude and for constants, by their symbols.
+    ``values``: numbers for amplitudes and for constants, by their symbols.
     """
 
     tower: Tower
@@ -92,35 +102,52 @@ class Equations:
         return self.values.get(name, self.tower.parameter(name))
 
 
-def oscillation(there: Equations, order: int, leading: str = "", which: int = 1) -> Oscillation:
-    """The periodic solution that is led by the variable ``leading``, with the ``which``-th frequency of its block.
+def oscillation(there: Equations, order: int, leading: Sequence[str] = (), which: int = 1) -> Oscillation:
+    """The solution with a phase for each of the variables that are ``leading``, or for the only one that can be.
+
+    The first has the ``which``-th frequency of its block, others the first that is left of theirs.
 
     Raises NoClosedForm where the equations are not quasi-linear or several frequencies are there, Resonance and
     NotPeriodic where there is no such solution.
     """
     tower = there.tower
     system = generating(tower, there.names, there.rows, lambda i: there.symbol(f"#{there.names[i]}"))
-    mode = _mode(there, system, leading, which)
-    place = there.names.index(leading) if leading else _leading(there, mode)
+    modes: list[Mode] = []
+    for name in leading or [""]:
+        modes.append(_mode(there, system, name, 1 if modes else which, modes))
+    places = [there.names.index(name) for name in leading] or [_leading(there, modes[0])]
     constants = {i: there.symbol(f"#{there.names[i]}") for i in system.constant}
-    kind, amplitude, others = Amplitude.FREE, tower.parameter(AMPLITUDE), None
-    orders = Orders(system, mode, place, amplitude, constants)
+    kind, others = Amplitude.FREE, None
+
+    def begun(amplitudes: Sequence[Element], corrections: Sequence[str] = ()) -> Orders:
+        led = [Led(system, *phase) for phase in zip(modes, places, amplitudes, strict=True)]
+        return Orders(system, led, constants, corrections)
+
+    symbols = [amplitude_symbol(k) for k in range(len(modes))]
+    orders = begun([tower.parameter(name) for name in symbols])
     try:
         for _ in range(order):
             orders.go_on()
     except Demand as demand:
+        if len(modes) > 1:
+            raise NotPeriodic(
+                "in the order [[order]] of [[small]] secular terms remain but for certain amplitudes: of several "
+                "phases these are not looked for",
+                order=demand.order,
+                small=there.small,
+            ) from None
         if order + demand.order > there.most:
             raise _secular(there, demand.order, _but_powers(tower, demand)) from None
-        amplitude, others = _determined(there, there.names[place], demand)
+        amplitude, others = _determined(there, there.names[places[0]], demand)
         kind = Amplitude.DETERMINED
-        orders = Orders(system, mode, place, amplitude, constants, correction_names(order))
+        orders = begun([amplitude], correction_names(order))
         _with_corrections(there, orders, order, demand.order)
     else:
-        if AMPLITUDE in there.values:
-            amplitude = there.values[AMPLITUDE]
-            if amplitude.is_zero():
+        if there.values.keys() & {*symbols}:
+            amplitudes = list(map(there.symbol, symbols))
+            if any(x.is_zero() for x in amplitudes):
                 raise ZeroDivisionError("an amplitude of 0 is no oscillation")
-            orders = Orders(system, mode, place, amplitude, constants)
+            orders = begun(amplitudes)
             for _ in range(order):
                 orders.go_on()
     names = [i for i in range(len(there.names)) if i not in system.aside]
@@ -130,12 +157,17 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         order,
         tuple(there.names[i] for i in names),
         there.powers,
-        there.names[place],
-        tuple(there.names[i] for i in mode.block),
-        orders.frequency,
-        tuple(orders.shifts[:order]),
+        tuple(
+            Phase(
+                there.names[led.leading],
+                tuple(there.names[i] for i in led.mode.block),
+                led.frequency,
+                tuple(led.shifts[:order]),
+                led.amplitude,
+            )
+            for led in orders.phases
+        ),
         kind,
-        amplitude,
         tuple((there.names[i], constants[i]) for i in system.constant),
         tuple(tuple(orders.series[i][: order + 1]) for i in names),
         tuple(orders.quadratures(order)),
@@ -143,7 +175,7 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         tuple(
             (tuple(there.names[i] for i in other_mode.block), other_mode.square)
             for other_mode in system.modes
-            if other_mode is not mode
+            if not any(other_mode is mode for mode in modes)
         ),
         damped=_named(there, system.damped),
         with_zero=_named(there, system.with_zero),
@@ -190,10 +222,9 @@ def _times(a: Mapping[int, Harmonics], b: Sequence[Harmonics], most: int) -> dic
     return times
 
 
-def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mode:
+def _mode(there: Equations, system: Generating, leading: str, which: int, taken: Sequence[Mode]) -> Mode:
+    """One that is not ``taken``."""
     if leading:
-        if leading not in there.names:
-            raise NoClosedForm("the equations do not depend on [[name]]", name=leading)
         own = [mode for mode in system.modes if there.names.index(leading) in mode.block]
     else:
         own = list(system.modes)
@@ -220,6 +251,9 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
         raise NoClosedForm("nothing oscillates where the small parameter is zero")
     if len({mode.block for mode in own}) > 1 or (len(own) > 1 and not leading):
         raise ModeIsOpen([tuple(there.names[i] for i in mode.block) for mode in own])
+    own = [mode for mode in own if not any(mode is other for other in taken)]
+    if not own:
+        raise NoClosedForm("all frequencies of [[name]] are taken by variables before it", name=leading)
     if which > len(own):
         single = "without the small parameter [[names]] have one frequency: there is none with the number [[which]]"
         more = (
@@ -321,7 +355,7 @@ def _positive_root(tower: Tower, square: Element) -> Element:
 def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
     tower = there.tower
     top = _but_powers(tower, demand)
-    condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
+    condition = there.told(tower.made(top / top.factor()[0], tower.context.constant(1)))
     return NoClosedForm(
         "in the order [[order]] of [[small]] secular terms remain unless [[condition]] = 0: "
         "amplitudes that square roots do not express are not followed",
@@ -334,7 +368,7 @@ def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
 def _other_amplitude(there: Equations, demand: Demand) -> NotPeriodic:
     tower = there.tower
     top = _but_powers(tower, demand)
-    condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
+    condition = there.told(tower.made(top / top.factor()[0], tower.context.constant(1)))
     return NotPeriodic(
         "with this amplitude secular terms remain in the order [[order]] of [[small]]: the amplitude "
         "has to fulfil [[condition]] = 0",
@@ -356,7 +390,7 @@ def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
     where = Message("in the order [[order]] of [[small]] secular terms remain", order=order, small=there.small)
     if condition.is_constant():
         return NotPeriodic("[[none]]: [[where]] for every real amplitude", none=none, where=where)
-    formula = there.told(tower.made(condition / condition.leading_coefficient(), tower.context.constant(1)))
+    formula = there.told(tower.made(condition / condition.factor()[0], tower.context.constant(1)))
     degrees = zip(tower.parameters, condition.degrees()[MOST_ROOTS:], strict=True)
     if any(degree > 0 and name.startswith("#") for name, degree in degrees):
         return NoClosedForm(
@@ -417,5 +451,6 @@ def _put(orders: Orders, place: int, value: Element) -> None:
 
     for i, series in enumerate(orders.series):
         orders.series[i] = [x.mapped(change) for x in series[: orders.complete]]
-    orders.shifts = [change(x) for x in orders.shifts[: orders.complete - 1]]
+    for led in orders.phases:
+        led.shifts[:] = [change(x) for x in led.shifts[: orders.complete - 1]]
     orders.products.clear()

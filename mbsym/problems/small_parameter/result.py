@@ -5,7 +5,7 @@ Of a manifold: coefficients, the flow on it, who attracts whom, what was checked
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -185,7 +185,7 @@ class Amplitude(Enum):
 
 @dataclass(frozen=True)
 class Divisor:
-    """What was divided by at ``harmonic`` in the equations of ``variables``: resonance where it vanishes.
+    """What was divided by at ``harmonic``, a wave number, in the equations of ``variables``: resonance where it is 0.
 
     With damping that is ``value`` + i k omega ``damping``: resonance where both vanish.
     """
@@ -211,13 +211,27 @@ class Drift:
 
 
 @dataclass(frozen=True)
-class Oscillation:
-    """x_i = sum_n eps^n series[i][n](T), n <= order, T' = frequency (1 + sum_n eps^n corrections[n - 1]).
+class Phase:
+    """T' = frequency (1 + sum_n eps^n corrections[n - 1]) of an oscillation in the variables of a ``block``.
 
-    ``leading``: the variable whose term cos T is ``amplitude`` at eps = 0 and that has no term sin T.  Where the
-    amplitude is free it is the variable's value at T = 0 in all orders, where it is ``DETERMINED`` its first
-    approximation; ``constants``: variables that keep their value at eps = 0, with it; it is theirs at T = 0 in all
-    orders.  ``names`` are the variables in the order of ``series``; ``powers``: x stands for x eps^power.
+    ``leading``: the variable whose term cos T is ``amplitude`` at eps = 0 and that has no term sin T.
+    """
+
+    leading: str
+    block: tuple[str, ...]
+    frequency: Element
+    corrections: tuple[Element, ...]
+    amplitude: Element
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """x_i = sum_n eps^n series[i][n](T), n <= order, in one phase T or several, which turn independently.
+
+    Where an amplitude is free it is the leading variable's value at T = 0 in all orders, where it is ``DETERMINED`` its
+    first approximation; of several phases all are free, and each is the whole coefficient of cos T.  ``constants``:
+    variables that keep their value at eps = 0, with it; it is theirs at T = 0 in all orders.  ``names`` are the
+    variables in the order of ``series``; ``powers``: x stands for x eps^power.
     ``others``: variables and the square of a frequency that is left out; ``damped``, ``with_zero``, ``not_known``:
     variables with roots that are surely not imaginary, zero, or not found.
     ``residuals``: the order of eps that is left in each equation when all this is put into it (None: nothing).
@@ -228,12 +242,8 @@ class Oscillation:
     order: int
     names: tuple[str, ...]
     powers: tuple[tuple[str, int], ...]
-    leading: str
-    block: tuple[str, ...]
-    frequency: Element
-    corrections: tuple[Element, ...]
+    phases: tuple[Phase, ...]
     kind: Amplitude
-    amplitude: Element
     constants: tuple[tuple[str, Element], ...]
     series: tuple[tuple[Harmonics, ...], ...]
     drifts: tuple[Drift, ...]
@@ -249,12 +259,52 @@ class Oscillation:
     exponent: tuple[int, Element] | None = None
 
     @property
+    def leading(self) -> str:
+        """Of the first phase, as the next three."""
+        return self.phases[0].leading
+
+    @property
+    def frequency(self) -> Element:
+        return self.phases[0].frequency
+
+    @property
+    def corrections(self) -> tuple[Element, ...]:
+        return self.phases[0].corrections
+
+    @property
+    def amplitude(self) -> Element:
+        return self.phases[0].amplitude
+
+    @property
     def verified(self) -> bool:
         """Whether what is left is of higher order than the expansion in every equation."""
         return bool(self.residuals) and all(residual is None or residual > self.order for residual in self.residuals)
 
 
-# Trigonometric polynomials of one phase over the elements of a tower: sum_k C_k cos(k T) + S_k sin(k T).
+# Trigonometric polynomials of phases over the elements of a tower: sum_k C_k cos(k T) + S_k sin(k T).
+#
+# Of several phases the wave number is  k = k_1 + k_2 APART + k_3 APART^2 + ...  (Kronecker's substitution): sums of
+# wave numbers are those of all multiples at once, so that products are those of one phase.
+
+
+#: More than twice any multiple of a phase.
+APART = 1 << 20
+
+
+def multiples(k: int, phases: int) -> tuple[int, ...]:
+    """(k_1, k_2, ...) of a wave number."""
+    parts = []
+    for _ in range(phases):
+        part = (k + APART // 2) % APART - APART // 2
+        parts.append(part)
+        k = (k - part) // APART
+    return tuple(parts)
+
+
+def speed_of(k: int, frequencies: Sequence[Element]) -> Element:
+    """k_1 w_1 + k_2 w_2 + ..."""
+    first, *rest = (w * n for n, w in zip(multiples(k, len(frequencies)), frequencies, strict=True))
+    return sum(rest, first)
 
 
 #: k >= 0 -> (C_k, S_k); S_0 is zero.  What is zero is left out.
@@ -262,7 +312,7 @@ Waves = Mapping[int, tuple[Element, Element]]
 
 
 class Harmonics:
-    """sum of ``waves`` in the phase T."""
+    """sum of ``waves`` in the phase T, or in several."""
 
     __slots__ = ("tower", "waves")
 
@@ -324,17 +374,22 @@ class Harmonics:
                 add(m - n, (ac + bd) * half, (bc - ad) * half)
         return Harmonics(self.tower, total)
 
-    def slope(self) -> Harmonics:
-        """d/dT."""
-        return Harmonics(self.tower, {k: (s * k, -(c * k)) for k, (c, s) in self.waves.items() if k})
+    def slope(self, phase: int = 0) -> Harmonics:
+        """The derivative by one of the phases."""
+        turns = {k: multiples(k, phase + 1)[phase] for k in self.waves}
+        return Harmonics(self.tower, {k: (s * turns[k], -(c * turns[k])) for k, (c, s) in self.waves.items()})
 
-    def sum_from_zero(self) -> Harmonics:
-        """The integral from T = 0 of what has no mean."""
+    def integral(self, frequencies: Sequence[Element]) -> Harmonics:
+        """The integral over the time, from where all phases are 0, of what has no mean.
+
+        Raises SingularPoint where a sum of multiples of the frequencies is zero.
+        """
         tower, parts = self.tower, {}
         total = tower.zero
         for k, (c, s) in self.waves.items():
             if k:
-                parts[k] = (-(s / tower.number(k)), c / tower.number(k))
+                back = tower.reciprocal(speed_of(k, frequencies))
+                parts[k] = (-(s * back), c * back)
                 total = total - parts[k][0]
         parts[0] = (total, tower.zero)
         return Harmonics(tower, parts)

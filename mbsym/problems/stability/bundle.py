@@ -204,12 +204,18 @@ _TRIED = [Fraction(k, 4) for k in range(-16, 17)]
 
 
 def by_potential(
-    size: int, derivative: Derivative, field: NumberField, conserved: bool, only: bool, gyroscopic: bool
+    size: int,
+    derivative: Derivative,
+    field: NumberField,
+    conserved: bool,
+    only: bool,
+    gyroscopic: bool,
+    damping: Sequence[Sequence[arb]] = (),
 ) -> Verdict | None:
     """The verdict on a rest from the derivatives of V alone, where an energy T_2 + V does not grow.
 
     ``conserved``: it does not fall, either; ``only``: there are no other coordinates, not even ignored ones;
-    ``gyroscopic``: the equations may have gyroscopic terms.
+    ``gyroscopic``: the equations may have gyroscopic terms; ``damping``: D, size x size.
     """
     if size > MOST_DEGENERATE:
         return None
@@ -218,7 +224,8 @@ def by_potential(
     except NotRational:
         return None
     extremum = _extremum(order, form, field)
-    return by_extremum(order, extremum, conserved and only and not (gyroscopic and size > 1))
+    complete = only and bool(damping) and all(minor > 0 for minor in leading_determinants(arb_mat, damping))
+    return by_extremum(order, extremum, conserved and only and not (gyroscopic and size > 1), complete)
 
 
 def _extremum(order: int, form: Sequence[Element], field: NumberField) -> Extremum:

@@ -8,7 +8,7 @@ but none of theirs is lost.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
@@ -16,13 +16,21 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
-from mbsym.algebra.factors import Polynomial
-from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.factors import occurring
+from mbsym.algebra.failures import NOT_THERE, TooLargeError
+from mbsym.algebra.plane.elements import Element, ElementMatrix, SimpleField
 from mbsym.algebra.plane.fields import Extension, Over, Point
-from mbsym.algebra.plane.numbers import AlgebraicNumber, number, primitive, roots_between, sign
-from mbsym.algebra.ring import Ring
+from mbsym.algebra.plane.numbers import AlgebraicNumber, primitive, roots_between, sign
+from mbsym.algebra.plane.numbers import number as as_number
+from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
+from mbsym.algebra.terms import residue
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.tree import divide, number
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import determined
 from mbsym.model.system import System
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.knowledge import definition_in_parameters
 
 #: Of cos(pi/D), D is at most this.
 MOST_PARTS = 60
@@ -130,7 +138,7 @@ def _root(arguments: Mapping[int, Polynomial]) -> Constant | None:
         images[k] = fmpq_poly([0, fmpq(root, base) / value.q])
     p = fmpz_poly([-base, 0, 1])
     roots = roots_between(p, fmpq(0), fmpq(base + 1))
-    made = number(roots[0])
+    made = as_number(roots[0])
     return Constant(made, images, f"sqrt({base})") if isinstance(made, AlgebraicNumber) else None
 
 
@@ -164,7 +172,7 @@ def constant_of_roots(ring: Ring, indices: Sequence[int]) -> Constant | None:
     unit_vectors = [[fmpq(int(place == 1 << k)) for place in range(size)] for k in range(len(squares))]
     solutions = [basis.solve(fmpq_mat(size, 1, vector)).entries() for vector in (*unit_vectors, powers[size])]
     minimal = primitive(fmpq_poly([-x for x in solutions.pop()] + [fmpq(1)]))
-    made = number(roots_between(minimal, fmpq(0), sum((x + 1 for x in squares), fmpq(1)))[-1])
+    made = as_number(roots_between(minimal, fmpq(0), sum((x + 1 for x in squares), fmpq(1)))[-1])
     if not isinstance(made, AlgebraicNumber) or int(made.polynomial.degree()) < size:
         return None
     images = {k: fmpq_poly(list(x)) for k, x in zip(indices, solutions, strict=True)}
@@ -178,7 +186,7 @@ def _angles(turns: Mapping[int, Fraction], kinds: Mapping[int, str]) -> Constant
         return None
     p = fmpz_poly.cos_minpoly(2 * parts)
     roots = roots_between(p, fmpq(-3), fmpq(3))
-    made = number(roots[-1])  # the largest of 2 cos(pi k/D) is that of k = 1
+    made = as_number(roots[-1])  # the largest of 2 cos(pi k/D) is that of k = 1
     if not isinstance(made, AlgebraicNumber):
         return None
     images = {}
@@ -194,3 +202,99 @@ def context_of(names: Sequence[str], constant: Constant | None) -> Any:
     while extra in names:
         extra += "_"
     return fmpq_mpoly_ctx.get((*names, *((extra,) if constant is not None else ())), Ordering.lex)
+
+
+# Parameter values that are algebraic: the field that they generate, in which the judge of rational points decides.
+#
+# Values such as 2*sqrt(2), sqrt(3)/2 or cos(pi/5), all in the field of one number (``constant``), are put in exactly;
+# so are a few different square roots.
+
+
+#: Rational numbers lie in every field, as in that of sqrt(2): cos(pi/3) is one.
+RATIONAL = Constant(AlgebraicNumber(fmpz_poly([-2, 0, 1]), fmpq(1), fmpq(2)), {}, "1")
+
+Fractional = tuple[Polynomial, tuple[tuple[Polynomial, int], ...]]
+
+#: Fields of a higher degree are left alone.
+MOST_DEGREE = 8
+
+
+class AlgebraicPoint:
+    """``put`` makes of a polynomial a fraction (numerator, ((factor, exponent), ...)) in generators with ``images``.
+
+    The images are polynomials in the number of ``constant``.
+    """
+
+    matrix = ElementMatrix
+
+    def __init__(self, constant: Constant, put: Callable[[Polynomial], Fractional]) -> None:
+        self._field, self._images, self._put = SimpleField(constant.number), constant.images, put
+
+    def settled(self, p: Polynomial) -> Polynomial:
+        """p, or 0 where it vanishes at the point."""
+        return p if p == 0 or self.value(p) else p * 0
+
+    def value(self, p: Polynomial) -> Element:
+        """p at the point."""
+        top, bottom = self._put(p)
+        quotient = residue(top, self._images, self._field.modulus)
+        for factor, exponent in bottom:
+            inverse = self._field.inverse(residue(factor, self._images, self._field.modulus))
+            for _ in range(exponent):
+                quotient = self._field.times(quotient, inverse)
+        return Element(self._field, quotient)
+
+
+def algebraic_point(
+    scene: Scene, ring: Ring, matrices: Any, values: Mapping[str, Any], equilibrium: Equilibrium
+) -> AlgebraicPoint | None:
+    """The point at which the generators that occur in matrices have their values; None where it is of no such kind.
+
+    ``values``: rational ones; of others the description's expressions are taken, relations and solved conditions.
+    """
+    try:
+        return _point(scene, ring, matrices, values, equilibrium)
+    except NOT_THERE:
+        return None
+
+
+def _point(
+    scene: Scene, ring: Ring, matrices: Any, values: Mapping[str, Any], equilibrium: Equilibrium
+) -> AlgebraicPoint | None:
+    whole: Ring = scene.ring
+    values_by_index: dict[int, Polynomial] = {}
+    for parameter in scene.system.parameters:
+        value = values.get(parameter.name)
+        expression = number(value) if isinstance(value, Fraction) else parameter.value
+        if expression is None:
+            continue
+        values_by_index[whole.index("parameter", parameter.name)] = scene.lower(expression)
+        if parameter.name in whole.angles:
+            sine, cosine = scene.lower.angle(divide(expression, number(whole.angles[parameter.name])))
+            values_by_index |= {
+                whole.index("sine", parameter.name): sine,
+                whole.index("cosine", parameter.name): cosine,
+            }
+    dependent = determined(scene, [(name, x.polynomial) for name, x in equilibrium.solved if name not in values])
+    notation = {item.name for item in scene.system.notation}
+    symbols: dict[int, Polynomial] = {}
+    for index in occurring(x for matrix in matrices for row in matrix for x in row):
+        g = ring.generators[index]
+        named = g.kind == "parameter" and g.name in notation
+        place = ring.indices[index] if isinstance(ring, ParameterRing) else index
+        symbol = definition_in_parameters(scene, g.name) if named else whole.context.gen(place)
+        symbols[index] = whole.substitute(whole.substitute(symbol, dependent), values_by_index)
+    places = {ring.indices[k] if isinstance(ring, ParameterRing) else k: x for k, x in symbols.items()}
+
+    def put(p: Polynomial) -> Fractional:
+        lifted = ring.lift(p) if isinstance(ring, ParameterRing) else p
+        top, bottom = whole.fraction(whole.reduce(whole.substitute(lifted, places)))
+        return top, tuple(bottom)
+
+    fractions = [put(x) for matrix in matrices for row in matrix for x in row]
+    parts = [x for top, bottom in fractions for x in (top, *(factor for factor, _ in bottom))]
+    used = sorted(set(occurring(parts)))
+    constant = constant_of(scene.system, whole, used) or constant_of_roots(whole, used) if used else RATIONAL
+    if constant is None or constant.number.polynomial.degree() > MOST_DEGREE:
+        return None
+    return AlgebraicPoint(constant, put)

@@ -91,7 +91,7 @@ def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool, ex
     shown = {
         Fact.MASS_POSITIVE: True,
         Fact.UNDAMPED: _no(d),
-        Fact.DAMPING_SEMIDEFINITE: _semidefinite(d),
+        Fact.DAMPING_SEMIDEFINITE: conservative or _semidefinite(d),  # x'.D x' leads its loss
         Fact.DAMPING_POSITIVE: _positive(d),
         Fact.NOT_GYROSCOPIC: _no(g),
         Fact.POTENTIAL: _no(n),

@@ -36,7 +36,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
-from mbsym.problems.stability.algebraic_values import algebraic_point
+from mbsym.problems.stability.constant import algebraic_point
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows

@@ -112,6 +112,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.HIGHER_MINIMUM: (
         "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy."
     ),
+    Because.HIGHER_MINIMUM_AND_COMPLETE: (
+        "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy, and "
+        "dissipation is complete."
+    ),
     Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order [[1]] decide.",
     Because.NO_FORCES: (
         "The (changed) potential energy is constant, and no gyroscopic forces act: every position is one of rest, and "
@@ -180,6 +184,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "Judged in other angles of body [[1]], about axes [[2]] by [[3]], in which the same motion is steady: "
         "coordinates are these angles here."
     ),
+    Because.APART: "This is about [[1]]: equations of motion that know no other coordinates are judged by themselves.",
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",

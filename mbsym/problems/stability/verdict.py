@@ -292,10 +292,15 @@ class Extremum(Enum):
     OPEN = "open"
 
 
-def by_extremum(order: int, extremum: Extremum, conserved: bool) -> Verdict | None:
-    """The verdict by what terms of this order make of V, where the energy does not grow; ``conserved``: nor fall."""
+def by_extremum(order: int, extremum: Extremum, conserved: bool, complete: bool = False) -> Verdict | None:
+    """The verdict by what terms of this order make of V, where the energy does not grow; ``conserved``: nor fall.
+
+    ``complete``: D > 0.  Then no motion keeps the energy but rests, of which there is no other near a strict minimum.
+    """
     if extremum is Extremum.MINIMUM:
         facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
+        if complete:
+            return concluded(facts | {Fact.DAMPING_POSITIVE}, Reason(Because.HIGHER_MINIMUM_AND_COMPLETE, (order,)))
         return concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
     if extremum is Extremum.NONE and conserved:
         facts = {Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED}

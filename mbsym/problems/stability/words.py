@@ -146,6 +146,7 @@ class Because(Enum):
     LINEAR_DRIFTS = auto()
     LINEAR_GYROSCOPIC = auto()
     HIGHER_MINIMUM = auto()  # (order)
+    HIGHER_MINIMUM_AND_COMPLETE = auto()  # (order)
     NO_MINIMUM = auto()  # (order)
     NO_FORCES = auto()
     TERMS_OF_HIGHER_ORDER = auto()
@@ -171,6 +172,7 @@ class Because(Enum):
     ELSEWHERE = auto()
     DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
     OTHER_ANGLES = auto()  # (body, axes, angles)
+    APART = auto()  # (coordinates)
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open
@@ -381,6 +383,14 @@ THEOREMS = (
     ),
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
     _theorem(LAGRANGE, Ground.ENERGY, Because.HIGHER_MINIMUM, Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS),
+    _theorem(
+        KELVIN_CHETAEV,
+        Ground.DECAYS,
+        Because.HIGHER_MINIMUM_AND_COMPLETE,
+        Fact.MINIMUM_OF_HIGHER_ORDER,
+        Fact.ENERGY_NEVER_GROWS,
+        Fact.DAMPING_POSITIVE,
+    ),
     _theorem(
         CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED
     ),

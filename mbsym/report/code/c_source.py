@@ -15,7 +15,6 @@ from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
@@ -113,11 +112,9 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         tied, _, _ = tied_code(analysis, writer)
         if n + len(tied.rows if tied else ()) > MOST_UNKNOWNS:
             raise NoClosedForm(
-                Message(
-                    "more than [[most]] accelerations and multipliers: C would need [[space]] of stack",
-                    most=MOST_UNKNOWNS,
-                    space=SPACE,
-                )
+                "more than [[most]] accelerations and multipliers: C would need [[space]] of stack",
+                most=MOST_UNKNOWNS,
+                space=SPACE,
             )
     functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
     entries: list[tuple[int, int]] = []

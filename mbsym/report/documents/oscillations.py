@@ -56,7 +56,7 @@ class Drift(Part, frozen=True):
 
 class Resonance(Part, frozen=True):
     variables: Annotated[list[str], "names of variables"]
-    harmonic: Annotated[int, "multiple of the frequency"]
+    harmonic: Annotated[int | list[int], "multiple of the frequency; of several phases the multiple of each"]
     order: Annotated[int, "order in which it first appears"]
     vanishes: Annotated[str, "resonance where this is zero"]
     vanishes_too: Annotated[str | UnsetType, "with damping: resonance only where this is zero, too"] = UNSET
@@ -95,6 +95,15 @@ class CycleExponent(Part, frozen=True):
     attracts: Annotated[bool | UnsetType, "whether it is negative; left out where signs do not tell"] = UNSET
 
 
+class FurtherPhase(Part, frozen=True):
+    phase: Annotated[str, "what it is called in formulas"]
+    leading: Annotated[str, "the variable whose oscillation leads"]
+    amplitude: Annotated[str, "symbol or value: what stands before its cosine in that variable"]
+    frequency: Annotated[str, "its rate where the small parameter is zero"]
+    corrections: Annotated[list[str], "nu_1, nu_2, ... of the rate, frequency (1 + nu_1 eps + ...)"]
+    phase_rate: Annotated[str, "its rate: frequency (1 + nu_1 eps + ...)"]
+
+
 class Oscillation(Part, frozen=True, kw_only=True):
     """a periodic solution in powers of the small parameter"""
 
@@ -113,6 +122,9 @@ class Oscillation(Part, frozen=True, kw_only=True):
     frequency: Annotated[str, "the rate of the phase where the small parameter is zero"]
     corrections: Annotated[list[str], "nu_1, nu_2, ... of the rate, frequency (1 + nu_1 eps + ...)"]
     phase_rate: Annotated[str, "the rate of the phase: frequency (1 + nu_1 eps + ...)"]
+    further_phases: Annotated[
+        list[FurtherPhase] | UnsetType, "of a motion with several frequencies, all free", told_apart_by("phase")
+    ] = UNSET
     solution: Annotated[
         list[Solution], "the variables as series of trigonometric polynomials", told_apart_by("variable")
     ]

@@ -132,7 +132,7 @@ def render(analysis: Analysis, problems: Sequence[int], version: int) -> bytes:
     known = solved(analysis)
     if known.forward is None and not (analysis.system.constraints and programs_of(analysis)[0]):
         why = worded(str(known.no_forward or programs_of(analysis)[1]))
-        raise NoClosedForm(Message("there are no accelerations: [[why]]", why=why))
+        raise NoClosedForm("there are no accelerations: [[why]]", why=why)
     files = sources(analysis, version)
     library = _library(analysis, files, version)
     return _zip(files | library)

@@ -25,8 +25,21 @@ from mbsym.model.states import InStates
 from mbsym.model.system import System
 from mbsym.numerics.between import between
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
+from mbsym.numerics.ensembles.variation import NORMAL, Grid, Variation
 from mbsym.numerics.simulate import Trajectory
-from mbsym.report.figures.drawing import BLUE, GREY, RED, pictures, saved, spoken, styled, thinned, title_of
+from mbsym.report.figures.drawing import (
+    BLUE,
+    GREY,
+    MOST_VALUES,
+    RED,
+    pictures,
+    saved,
+    spoken,
+    styled,
+    symbol,
+    thinned,
+    title_of,
+)
 from mbsym.report.unit_text import labelled
 
 #: Rows of time histories, and rows and columns of phase planes, on one page.
@@ -324,7 +337,7 @@ def _drift(trajectory: Trajectory, note: str, conserved: bool) -> Figure:
 # Fan charts: how the members of an ensemble are spread over time, a panel a coordinate or velocity.
 
 
-def fan_charts(ensemble: Ensemble, formats: Sequence[str]) -> dict[str, bytes]:
+def fan_charts(ensemble: Ensemble, variations: Sequence[Variation], formats: Sequence[str]) -> dict[str, bytes]:
     """``fan.svg`` and ``.png``; further pages, ``fan-2.svg``, where there are many coordinates."""
     system = ensemble.members.dynamics.system
     names = system.coordinates
@@ -333,21 +346,31 @@ def fan_charts(ensemble: Ensemble, formats: Sequence[str]) -> dict[str, bytes]:
     for page in range(count):
         part = range(page * len(names) // count, (page + 1) * len(names) // count)
         stem = "fan" + (f"-{page + 1}" if page else "")
-        images |= pictures({stem: lambda part=part: _ensemble_figure_page(ensemble, part)}, formats)  # type: ignore[misc]
+        images |= pictures({stem: lambda part=part: _ensemble_figure_page(ensemble, variations, part)}, formats)  # type: ignore[misc]
     return images
 
 
-def _ensemble_figure_page(ensemble: Ensemble, part: range) -> Figure:
+def _spread(variation: Variation) -> str:
+    """How a parameter or a start is spread, as mathematics: a normal or uniform distribution, or an interval."""
+    if isinstance(variation, Grid):
+        return rf"{symbol(variation.name)} $= {variation.low:.4g}\ldots {variation.high:.4g}$"
+    letter, power = ("N", "^2") if variation.kind == NORMAL else ("U", "")
+    return (
+        rf"{symbol(variation.name)} $\sim \mathcal{{{letter}}}({variation.first:.4g},\ {variation.second:.4g}{power})$"
+    )
+
+
+def _ensemble_figure_page(ensemble: Ensemble, variations: Sequence[Variation], part: range) -> Figure:
     system = ensemble.members.dynamics.system
     positions, velocities = coordinate_labels(system, "\n")
-    figure = Figure(figsize=(10, 1.4 + 1.9 * len(part)), layout="constrained")
-    axes = figure.subplots(len(part), 2, squeeze=False, sharex=True)
     say = spoken(system)
-    what = {"name": system.name, "count": ensemble.count, "varied": ", ".join(ensemble.members.names)}
-    text = "[[name]]: members: [[count]], ended early: [[lost]], varied: [[varied]]"
-    whole = Message("[[name]]: members: [[count]], varied: [[varied]]", **what)
-    title = say(Message(text, **what, lost=len(ensemble.fates)) if ensemble.fates else whole)
-    figure.suptitle(title if len(title) <= 100 else title[:97] + "...", fontsize=12, parse_math=False)
+    members = Message("members: [[count]]", count=ensemble.count)
+    if ensemble.fates:
+        members = Message("members: [[count]], ended early: [[lost]]", count=ensemble.count, lost=len(ensemble.fates))
+    several = Message("varied: [[count]]", count=len(variations))
+    spread = ",  ".join(map(_spread, variations)) if len(variations) <= MOST_VALUES else say(several)
+    figure = _page(10, 1.6 + 1.9 * len(part), f"{title_of(system)}: {say(members)}", spread)
+    axes = figure.subplots(len(part), 2, squeeze=False, sharex=True)
     drawn: dict[str, Any] = {}
     left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
     for row, place in zip(axes, part, strict=True):

@@ -16,10 +16,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from mbsym.model.system import System
+from mbsym.numerics.ensembles.variation import Points
 from mbsym.report.figures.drawing import BLUE, GREY, equalities, pictures, spoken, symbol
 from mbsym.report.maps.frame import colour_of
 from mbsym.sweeps.judged import WORDS
-from mbsym.sweeps.points import Column, Points
+from mbsym.sweeps.points import Column
 
 #: A plane has so many cells on a side at most: more than a picture shows.
 MOST_CELLS = 1_600

@@ -138,8 +138,12 @@ class Writer:
         return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
 
     @inline.register
+    def _(self, value: content.Under) -> Markup:
+        return Markup('<span class="under">{}</span>').format(self._joined(value.parts))
+
+    @inline.register
     def _(self, value: content.Numbered) -> Markup:
-        return Markup('\u00a0<a class="there" href="#{}">\u2193</a>').format(_anchor(value.key))
+        return Markup('<a class="there" href="#{}">\u00a0\u2193</a>').format(_anchor(value.key))
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:

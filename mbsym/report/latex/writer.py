@@ -111,6 +111,10 @@ class Writer:
         return self.inline(value.text)
 
     @inline.register
+    def _(self, value: content.Under) -> str:
+        return f"\\hspace*{{1em}}{self.inline(content.Phrase(value.parts))}"
+
+    @inline.register
     def _(self, value: content.Elsewhere) -> str:
         return self.inline(value.link)
 
@@ -363,7 +367,7 @@ class Writer:
     def _(self, value: content.Facts) -> str:
         items = ""
         for fact in value.items:
-            lines = ";\\newline ".join(map(self.inline, fact.lines))
+            lines = ";\\newline ".join(map(self.inline, fact.lines)).replace(":;", ":")
             items += f"\\item {self.inline(fact.name)}: {lines.removesuffix('.')}.\n"
         return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{items}\\end{{itemize}}\n"
 

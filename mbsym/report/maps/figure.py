@@ -36,7 +36,7 @@ from mbsym.maps.result import Cell, Lack, Map, Of
 from mbsym.maps.slices import Picture, Stack, stands_out
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
-from mbsym.report.figures.drawing import pictures
+from mbsym.report.figures.drawing import pictures, symbol
 from mbsym.report.language import Language
 from mbsym.report.maps.branch_figure import bifurcations
 from mbsym.report.maps.frame import (
@@ -52,7 +52,6 @@ from mbsym.report.maps.frame import (
     axis_label,
     equal,
     framed,
-    in_mathtext,
     legend,
     look_of_count,
     look_of_degree,
@@ -429,7 +428,7 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
         for k, letter in told.items():
             if letter not in named_letters:  # of slices, the first tells what a curve is
                 named_letters.add(letter)
-                words = language.say(border_words(chart, k, in_mathtext))
+                words = language.say(border_words(chart, k, symbol))
                 if isinstance(chart.ground, Line):
                     words = f"{float_of(chart.corners[k].sample):.6g}   {words}"
                 by_condition.setdefault(words, []).append(letter)

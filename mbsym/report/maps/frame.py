@@ -17,7 +17,7 @@ from mbsym.maps.mapping import float_of
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.problems.stability.words import Word
-from mbsym.report.figures.drawing import named
+from mbsym.report.figures.drawing import named, symbol
 from mbsym.report.maps.words import rational_text
 from mbsym.report.unit_text import labelled
 
@@ -85,12 +85,7 @@ def framed(axes: Axes, size: float = SMALL) -> None:
 
 def axis_label(system: System, name: str) -> str:
     """The name as a formula, with its unit."""
-    return labelled(in_mathtext(name), unit_of(system, name))
-
-
-def in_mathtext(name: str) -> str:
-    """A name by itself."""
-    return named(LatexNames([name]), name)
+    return labelled(symbol(name), unit_of(system, name))
 
 
 def legend(figure: Figure, entries: Sequence[tuple[Any, str]]) -> None:

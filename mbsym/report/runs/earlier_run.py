@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import json
+import re
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+import msgspec
 import numpy as np
 
 from mbsym.expressions.message import Counted, Message, worded
@@ -20,6 +21,7 @@ from mbsym.numerics.methods.interface import Cause
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.models import Model, scenario_of
 from mbsym.numerics.scenario import Scenario
+from mbsym.report.documents import simulation as doc
 from mbsym.report.runs.trajectory_csv import column_units
 from mbsym.simulation.request import TOLERANCE, Earlier
 from mbsym.source.yaml_writer import meaning
@@ -40,52 +42,59 @@ class Unfit(Exception):
         super().__init__(str(reason))
 
 
+class _Content(msgspec.Struct, frozen=True):
+    """What of a file is needed."""
+
+    format: Literal[1]
+    description_sha256: str
+    ended: doc.Ended | None
+    time: doc.TimeSpan
+    reached: doc.Reached
+    method: doc.MethodUsed
+    arithmetic: str
+    tolerance: float | str | None
+    step: float | str | None
+    parameters: dict[str, float | str]
+    initial: dict[str, float | str]
+    files: list[str]
+    table_sha256: str | None
+    model: doc.Model
+    method_changes: list[doc.MethodChange] = []
+
+
 def read_earlier(path: Path, system: System) -> Earlier:
     """The run that a ``simulation.json`` tells of.  Raises Unfit."""
     content = _content(path)
-    if content["description_sha256"] != meaning(system):
+    if content.description_sha256 != meaning(system):
         raise Unfit("it belongs to another description, or the description has changed since (its hash differs)")
-    ended = content["ended"]
-    if ended is not None and ended["kind"] not in ("interrupted", Cause.STEP_LIMIT):
+    ended, state = content.ended, content.reached.state
+    if ended is not None and ended.kind not in ("interrupted", Cause.STEP_LIMIT):
         text = "that run ended with [[kind]] at t = [[time]]: there is nothing to go on from"
-        raise Unfit(Message(text, kind=worded(str(ended["kind"])), time=str(ended["time"])))
-    names = [*system.coordinates, *system.velocities]
-    state = content["reached"]["state"]
-    if not isinstance(state, dict) or list(state) != names:
+        raise Unfit(Message(text, kind=worded(ended.kind), time=str(ended.time)))
+    if list(state) != [*system.coordinates, *system.velocities]:
         raise Unfit("its last state is not that of these coordinates")
-    arithmetic, method = content["arithmetic"], content["method"]["name"]
-    if content.get("method_changes"):
-        method = _last_method(content["method_changes"], method)
+    arithmetic, method = content.arithmetic, content.method.name
+    if content.method_changes and method != "parts":
+        method = content.method_changes[-1].method
     method = "auto" if method == "parts" else method  # parts by different methods are found again
     if arithmetic not in TOLERANCE or method not in ("auto", *METHODS):
         raise Unfit(Message("there is no method [[method]] in [[arithmetic]]", method=method, arithmetic=arithmetic))
     kind = np.longdouble if arithmetic == EXTENDED else float
     last = np.array([_number(value, kind) for value in state.values()])
-    time = _number(content["reached"]["time"], float)
+    time = _number(content.reached.time)
     times, states = _rows(path, content, system, time, last)
-    sampling = content["time"]
-    spacing = (_number(sampling["to"], float) - _number(sampling["from"], float)) / max(1, int(sampling["samples"]) - 1)
+    spacing = (content.time.to - content.time.from_) / max(1, content.time.samples - 1)
     if len(times) > 2:
         spacing = float(times[1] - times[0])
     if not (spacing > 0 and time > 0):
         raise Unfit("its times are no times")
-    tolerance, step = (None if content[key] is None else _number(content[key], float) for key in ("tolerance", "step"))
-    values = {**content["parameters"], **content["initial"]}
-    exact = {name: _number(value, float) for name, value in values.items()}
-    change = content["method"].get("may_change") is True
-    model = _model(content, system)
+    tolerance, step = (None if x is None else _number(x) for x in (content.tolerance, content.step))
+    exact = {name: _number(value) for name, value in (content.parameters | content.initial).items()}
+    model = Model(content.model.gravity, content.model.linear, tuple(content.model.without))
+    if model.gravity not in (None, 2, 3, 4, "exact") or not {*model.without} <= {*system.parameter_names}:
+        raise Unfit("it is damaged: its model is none")
+    change = content.method.may_change
     return Earlier(times, states, spacing, exact, method, tolerance, step, arithmetic, change, model)
-
-
-def _last_method(changes: Any, first: str) -> str:
-    """What a run went by in the end.  Raises Unfit."""
-    if first == "parts":
-        return first
-    last = changes[-1] if isinstance(changes, list) else None
-    if not isinstance(last, dict) or not isinstance(last.get("method"), str):
-        raise Unfit("it is damaged: its method_changes are none")
-    method: str = last["method"]
-    return method
 
 
 def changed(earlier: Earlier, scenario: Scenario) -> Iterator[str]:
@@ -100,52 +109,38 @@ def changed(earlier: Earlier, scenario: Scenario) -> Iterator[str]:
             yield Message("[[name]] was [[before]] and is [[after]]", name=name, before=before, after=after)
 
 
-def _content(path: Path) -> dict[str, Any]:
-    """The file as a mapping that has what is needed, whatever its values are."""
+def _content(path: Path) -> _Content:
+    """What is needed of the file.  Raises Unfit."""
     try:
         if path.stat().st_size > LARGEST:
             raise Unfit("it is too large for a simulation.json")
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = msgspec.json.decode(path.read_bytes())
     except OSError as error:
         raise Unfit(Message("it cannot be read: [[why]]", why=error.strerror or error)) from None
     except (ValueError, RecursionError):
         raise Unfit("it is no JSON file, or damaged") from None
-    required = {"format", "description_sha256", "ended", "time", "reached", "method", "arithmetic", "tolerance", "step"}
-    required |= {"parameters", "initial", "files"}
-    if not isinstance(content, dict) or not required <= set(content) or content["format"] != 1:
+    if not isinstance(content, dict) or content.get("format") != 1:
         raise Unfit("it is not a simulation.json of this version of mbsym")
-    if not {"table_sha256", "model"} <= set(content):
-        raise Unfit('it is damaged, or older than --continue: "table_sha256" and "model" are wanted')
-    shapes = {"time": ("from", "to", "samples"), "reached": ("time", "samples", "state"), "method": ("name",)}
-    shapes["model"] = ("gravity", "linear", "without")
-    for key, inner in shapes.items():
-        if not isinstance(content[key], dict) or not set(inner) <= set(content[key]):
-            text = 'it is damaged, or older than --continue: [[names]] are wanted under "[[key]]"'
-            raise Unfit(Message(text, names=", ".join(inner), key=key))
-    ended = content["ended"]
-    mappings = all(isinstance(content[key], dict) for key in ("parameters", "initial"))
-    counts = all(isinstance(content[key]["samples"], int) for key in ("time", "reached"))
-    words = all(isinstance(word, str) for word in (content["method"]["name"], content["arithmetic"]))
-    end = ended is None or (isinstance(ended, dict) and {"kind", "time"} <= set(ended))
-    if not (mappings and counts and words and end and isinstance(content["files"], list)):
-        raise Unfit("it is damaged")
-    return content
-
-
-def _number(value: Any, kind: Any) -> Any:
-    """A finite number.  Raises Unfit."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise Unfit("it is damaged: there is no number where there should be one")
     try:
-        number = kind(value if isinstance(value, str) else float(value))
-    except (ValueError, OverflowError):
+        return msgspec.convert(content, _Content)
+    except msgspec.ValidationError as error:  # "... missing required field `time` - at `$.reached`"
+        found = (re.search(pattern, str(error)) for pattern in (r"`\$\.?([^`]+)`", r"field `(\w+)`"))
+        place = ".".join(match[1] for match in found if match)
+        raise Unfit(Message("it is damaged, or older than --continue: [[place]]", place=place)) from None
+
+
+def _number(value: float | str, kind: Any = float) -> Any:
+    """A finite number.  Raises Unfit."""
+    try:
+        number = kind(value)
+    except ValueError:
         raise Unfit("it is damaged: there is no number where there should be one") from None
     if not isfinite(float(number)):
         raise Unfit("its last state is not finite: there is nothing to go on from")
     return number
 
 
-def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, last: Any) -> tuple[Any, Any]:
+def _rows(path: Path, content: _Content, system: System, time: float, last: Any) -> tuple[Any, Any]:
     """(times, states) of the table beside it.  Raises Unfit where there is none, or another one."""
     table, digest = _table(path, content)
     size = 1 + len(last)
@@ -157,7 +152,7 @@ def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, l
                 columns = np.loadtxt(stream, delimiter=",", usecols=range(size), ndmin=2).T
     except (OSError, ValueError) as error:
         raise Unfit(Message(UNREAD, file=table.name, why=error)) from None
-    count = content["reached"]["samples"]
+    count = content.reached.samples
     if len(header) < size or header != expected or columns.shape != (size, count):
         text = "[[file]] beside it is not the table of that run ([[count]] are wanted)"
         raise Unfit(Message(text, file=table.name, count=Counted(count, "row")))
@@ -170,16 +165,16 @@ def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, l
     ):
         text = "[[file]] beside it does not end where that run did: one of the two has been changed"
         raise Unfit(Message(text, file=table.name))
-    if digest != content["table_sha256"]:
+    if digest != content.table_sha256:
         text = "[[file]] beside it has been changed since that run wrote it (its hash differs)"
         raise Unfit(Message(text, file=table.name))
     states[:, -1] = last
     return times, states
 
 
-def _table(path: Path, content: Mapping[str, Any]) -> tuple[Path, str]:
+def _table(path: Path, content: _Content) -> tuple[Path, str]:
     """The table beside a simulation.json, and the SHA-256 of what is in it.  Raises Unfit."""
-    names = [name for name in content["files"] if name in ("trajectory.csv", "trajectory-partial.csv")]
+    names = [name for name in content.files if name in ("trajectory.csv", "trajectory-partial.csv")]
     if not names:
         raise Unfit("that run wrote no table of rows (--format csv), which the new ones would follow")
     table = path.parent / names[0]
@@ -188,14 +183,3 @@ def _table(path: Path, content: Mapping[str, Any]) -> tuple[Path, str]:
             return table, hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError as error:
         raise Unfit(Message(UNREAD, file=table.name, why=error)) from None
-
-
-def _model(content: Mapping[str, Any], system: System) -> Model:
-    """What was in the equations.  Raises Unfit."""
-    model = content["model"]
-    gravity, linear, without = model["gravity"], model["linear"], model["without"]
-    names = isinstance(without, list) and all(name in system.parameter_names for name in without)
-    orders = isinstance(gravity, (int, str, type(None))) and not isinstance(gravity, bool)
-    if not (names and orders and isinstance(linear, bool) and gravity in (None, 2, 3, 4, "exact")):
-        raise Unfit("it is damaged: its model is none")
-    return Model(gravity, linear, tuple(without))

@@ -19,7 +19,7 @@ from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import ensemble as doc
 from mbsym.report.documents.base import file_of
 from mbsym.report.runs.simulation_words import laws_json
-from mbsym.report.runs.trajectory_csv import text_table, written
+from mbsym.report.runs.trajectory_csv import shortest, text_table, written
 
 #: So many members that ended early are named one by one in sentences.
 NAMED = 5
@@ -57,8 +57,8 @@ def members_csv(ensemble: Ensemble) -> str:
     rows: list[Sequence[object]] = []
     for member in range(ensemble.count):
         fate = ended.get(member)
-        values = (f"{value:.17g}" for value in ensemble.members.values[:, member])
-        state = (f"{value:.17g}" if isfinite(value) else "" for value in ensemble.final[:, member])
+        values = map(shortest, ensemble.members.values[:, member])
+        state = (shortest(value) if isfinite(value) else "" for value in ensemble.final[:, member])
         rows.append((member, *values, *state, *((fate.kind, f"{fate.time:.9g}") if fate else ("", ""))))
     return text_table(["member", *varied, *final, "ended", "at"], rows)
 

@@ -13,7 +13,7 @@ from mbsym.model.system import System
 from mbsym.numerics.events.events import MOST, Occurrence, Occurrences
 from mbsym.numerics.events.surfaces import Action, Event
 from mbsym.report.documents import simulation as doc
-from mbsym.report.runs.trajectory_csv import text_table
+from mbsym.report.runs.trajectory_csv import shortest, text_table
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Simulation
 from mbsym.simulation.watching import SectionPoints
@@ -103,7 +103,7 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
         yield "warning", Message(text, most=MOST, more=occurrences.beyond)
 
 
-# ``events.csv`` and ``section.csv``: what happened along a run, as plain CSV; numbers read back exactly (``%.17g``).
+# ``events.csv`` and ``section.csv``: what happened along a run, as plain CSV; numbers read back exactly.
 #
 # Columns of events: ``t``, ``event`` (its title, or the condition as it was written), ``direction`` (1: the left side
 # grew beyond the right one, -1: fell below it, 0: touched it, so that there were two passages or none), the coordinates
@@ -117,9 +117,9 @@ def events_csv(occurrences: Occurrences, system: System, radii: Sequence[float |
     time_unit = unit_of(system, "t")
     proved = [] if radii is None else [marked("t_radius", time_unit)]
     header = [marked("t", time_unit), *proved, "event", "direction", *_states(system)]
-    columns = [[]] * len(occurrences) if radii is None else [["" if x is None else _number(x)] for x in radii]
+    columns = [[]] * len(occurrences) if radii is None else [["" if x is None else shortest(x)] for x in radii]
     rows = (
-        [_number(time), *radius, names[which], str(turn), *map(_number, state)]
+        [shortest(time), *radius, names[which], str(turn), *map(shortest, state)]
         for time, radius, which, turn, state in zip(
             occurrences.times, columns, occurrences.which, occurrences.turns, occurrences.states.T, strict=True
         )
@@ -135,7 +135,7 @@ def section_csv(section_points: SectionPoints, system: System) -> str:
     shown = [place for place, axis in enumerate(section_points.section.axes) if axis.text in axes]
     header = [marked("t", unit_of(system, "t")), "direction", *axes, *_states(system)]
     rows = (
-        [_number(time), str(turn), *map(_number, point[shown]), *map(_number, state)]
+        [shortest(time), str(turn), *map(shortest, point[shown]), *map(shortest, state)]
         for time, turn, point, state in zip(
             section_points.times, section_points.turns, section_points.points.T, section_points.states.T, strict=True
         )
@@ -145,7 +145,3 @@ def section_csv(section_points: SectionPoints, system: System) -> str:
 
 def _states(system: System) -> Sequence[str]:
     return [marked(name, unit_of(system, name)) for name in (*system.coordinates, *system.velocities)]
-
-
-def _number(value: Any) -> str:
-    return f"{float(value):.17g}"

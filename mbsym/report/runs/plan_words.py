@@ -29,6 +29,7 @@ from mbsym.numerics.planning.plan import (
 )
 from mbsym.report.documents import simulation as doc
 from mbsym.report.runs.certificate import at_most
+from mbsym.report.runs.trajectory_csv import shortest
 
 if TYPE_CHECKING:
     from mbsym.expressions.condition import Condition
@@ -172,19 +173,19 @@ def alternative_words(other: Alternative, plan: Plan) -> Message:
 
 def repeating_options(request: Request) -> list[str]:
     """The options after FILE, beside --set and those of the output, that repeat a settled run without choosing."""
-    options = ["--time", _number(request.time)]
+    options = ["--time", shortest(request.time)]
     options += ["--samples", str(request.samples)] if request.samples is not None else []
-    options += ["--every", _number(request.every)] if request.every is not None else []
+    options += ["--every", shortest(request.every)] if request.every is not None else []
     options += ["--method", request.method]
-    options += ["--tolerance", _number(request.tolerance)] if request.tolerance is not None else []
-    options += ["--step", _number(request.step)] if request.step is not None else []
-    options += ["--max-step", _number(request.longest)] if request.longest is not None else []
+    options += ["--tolerance", shortest(request.tolerance)] if request.tolerance is not None else []
+    options += ["--step", shortest(request.step)] if request.step is not None else []
+    options += ["--max-step", shortest(request.longest)] if request.longest is not None else []
     options += ["--arithmetic", request.arithmetic] if request.arithmetic != "float64" else []
     options += ["--gravity", str(request.model.gravity)] if request.model.gravity is not None else []
     options += ["--linear"] if request.model.linear else []
     options += [word for name in request.model.without for word in ("--without", name)]
     options += ["--whole"] if request.whole else []
-    options += ["--certify", _number(request.certify)] if request.certify is not None else []
+    options += ["--certify", shortest(request.certify)] if request.certify is not None else []
     options += ["--step-limit", str(request.step_limit)] if request.step_limit != Setting.step_limit else []
     options += ["--invariants"] if request.invariants else []
     watched = request.events
@@ -199,11 +200,6 @@ def repeating_options(request: Request) -> list[str]:
 def _written(condition: Condition) -> str:
     """With its title, where it has one of its own."""
     return condition.text if condition.title == condition.text else f"{condition.title}: {condition.text}"
-
-
-def _number(x: float) -> str:
-    """The shortest text that is read as the same number."""
-    return repr(x).removesuffix(".0")
 
 
 def repeating_command(file: str, settings: Sequence[str], request: Request, carried: Sequence[str] = ()) -> str:

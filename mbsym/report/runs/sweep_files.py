@@ -13,18 +13,15 @@ import numpy as np
 
 from mbsym.expressions.message import Counted, Message
 from mbsym.model.system import System
-from mbsym.numerics.ensembles.variation import Grid, Variation
+from mbsym.numerics.ensembles.variation import Grid, Points, Variation
 from mbsym.report.documents import ensemble as doc
 from mbsym.report.documents.base import file_of, finite
 from mbsym.report.runs.trajectory_csv import header, rows
 from mbsym.sweeps.judged import VERDICT
-from mbsym.sweeps.points import Column, Points
+from mbsym.sweeps.points import Column
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
 
 Part = tuple[Any, Mapping[str, Any]]
-
-#: From so many numbers on the decimals come from machine code.
-_MANY = 100_000
 
 
 def sweep_csv(names: Sequence[str], columns: Sequence[Column], parts: Iterable[Part]) -> Iterator[str]:
@@ -32,8 +29,7 @@ def sweep_csv(names: Sequence[str], columns: Sequence[Column], parts: Iterable[P
     yield header([*names, *(column.name for column in columns)])
     for points, measured in parts:
         numbers = [*points, *(measured[column.name] for column in columns if not column.whole)]
-        many = len(numbers) * points.shape[1] >= _MANY
-        text = rows([np.asarray(row, dtype=float) for row in numbers], many)
+        text = rows([np.asarray(row, dtype=float) for row in numbers])
         lines = text.replace("nan", "").split("\n")[:-1]
         tails = [_told(column, measured[column.name]) for column in columns if column.whole]
         if tails and len(tails) == len(columns):  # words and whole numbers alone: they come last anyway

@@ -15,7 +15,7 @@ from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
 from mbsym.numerics.trade.tradeoff import Measured, Study, Tradeoff
 from mbsym.report.documents import tradeoff as doc
 from mbsym.report.documents.base import file_of
-from mbsym.report.runs.trajectory_csv import text_table
+from mbsym.report.runs.trajectory_csv import shortest, text_table
 
 COLUMNS = (
     "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "cost", "front",
@@ -94,7 +94,7 @@ def _row(row: Measured, tied: bool) -> Sequence[object]:
 
 
 def _number(value: float) -> str:
-    return f"{value:.17g}" if isfinite(value) else ""
+    return shortest(value) if isfinite(value) else ""
 
 
 def compared(tradeoffs: Sequence[tuple[str, Tradeoff, float]]) -> list[tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""A trajectory as plain CSV: one line of names, then numbers that read back exactly (``%.17g``); no comments.
+"""A trajectory as plain CSV: one line of names, then numbers that read back exactly; no comments.
 
 Columns: ``t``, the coordinates, ``<name>_dot``, ``energy`` (T - U), where something is prescribed
 ``generalized_energy`` (h = T2 - T0 - U, else the same), ``relative_drift`` ((h - h(0)) over the largest kinetic
@@ -17,6 +17,7 @@ from io import StringIO
 from typing import Any
 
 import numpy as np
+from msgspec.json import encode
 
 from mbsym.model.quantities import (
     acceleration_unit,
@@ -31,7 +32,6 @@ from mbsym.model.quantities import (
 from mbsym.model.system import System
 from mbsym.numerics.body_motion import BodyMotions
 from mbsym.numerics.columns import columns
-from mbsym.numerics.kernels.decimals import MANY, lines
 from mbsym.numerics.simulate import Trajectory
 
 #: Rows turned into text at a time: numbers of Python take more room than those of an array.
@@ -52,7 +52,7 @@ def trajectory_parts(
         own = ("energy",) if natural else ("energy", "generalized_energy")
         yield header(names)
         for points, values in trajectory.table.blocks():
-            yield rows([*points, *(values[name] for name in (*own, "relative_drift", *further))], True)
+            yield rows([*points, *(values[name] for name in (*own, "relative_drift", *further))])
         return
     energies = [trajectory.energy] if natural else [trajectory.energy, trajectory.generalized_energy]
     table = [trajectory.times, *trajectory.states, *energies, trajectory.drift, *further.values()]
@@ -73,10 +73,9 @@ def written(names: Sequence[str], table: Sequence[Any]) -> str:
 
 def parts(names: Sequence[str], table: Sequence[Any]) -> Iterator[str]:
     """The same block by block."""
-    many = len(table) * len(table[0]) >= MANY
     yield header(names)
     for start in range(0, len(table[0]), BLOCK):
-        yield rows([column[start : start + BLOCK] for column in table], many)
+        yield rows([column[start : start + BLOCK] for column in table])
 
 
 def text_table(names: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
@@ -93,16 +92,22 @@ def header(names: Sequence[str]) -> str:
     return text_table(names, ())
 
 
-def rows(table: Sequence[Any], many: bool) -> str:
-    """The rows of a table, given as columns; by machine code, which has to be compiled, where there are ``many``."""
-    block = np.array(table, dtype=float)
-    if many:
-        return lines(block)
-    line = ",".join(["%.17g"] * len(block)) + "\n"
-    return "".join(line % tuple(row) for row in block.T.tolist())
+def rows(table: Sequence[Any]) -> str:
+    """The rows of a table, given as columns: each number in the fewest digits that read back exactly."""
+    block = np.array(table, dtype=float).T
+    if np.all(np.isfinite(block)):
+        lines = encode(block.tolist())[2:-2].decode().replace("],[", "\n") + "\n"
+    else:  # JSON has no such numbers
+        lines = "".join(",".join(map(repr, row)) + "\n" for row in block.tolist())
+    return lines.replace(".0,", ",").replace(".0\n", "\n")
 
 
-# ``bodies.csv``: what each body does along a trajectory, as plain CSV: a line of names, then numbers (``%.17g``).
+def shortest(value: Any) -> str:
+    """A number in the fewest digits that read back exactly."""
+    return repr(float(value)).removesuffix(".0")
+
+
+# ``bodies.csv``: what each body does along a trajectory, as plain CSV: a line of names, then numbers.
 #
 # Columns: ``t``; for each body NAME
 #

@@ -44,6 +44,7 @@ from mbsym.report.content import (
     Relation,
     Said,
     Symbol,
+    Under,
     Unit,
     joined,
     named,
@@ -250,20 +251,20 @@ def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
         yield from further
         yield from _what_would_decide(stability)
         return
-    yield Phrase((*presumed, Said("the whole system"), ": ", *verdict(stability.verdict, "verdict")))
-    word, lines_by_part = (
-        stability.verdict.word,
-        [list(_part(part, k, "")) for k, part in enumerate(stability.subsystems, start=1)],
-    )
+    word = stability.verdict.word
+    lines_by_part = [list(_part(part, k, "")) for k, part in enumerate(stability.subsystems, start=1)]
     alike = all(part.theory.verdict.word is word for part in stability.subsystems)
+    together = alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in lines_by_part)
+    apart = ("; ", Said("each group of coordinates while the others keep to the motion"), ":")
+    whole = (Said("the whole system"), ": ", *verdict(stability.verdict, "verdict"))
+    yield Phrase((*presumed, *whole, *(() if together else apart)))
     yield from _what_would_decide(stability)
-    if alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in lines_by_part):
+    if together:
         return
     for part, lines in zip(stability.subsystems, lines_by_part, strict=True):
         lines[:0] = _coefficients(part, lines, results.variable)
         yield Phrase((named(part.coordinates), ": ", lines[0]))
-        yield from lines[1:]
-    yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
+        yield from (Under((line,)) for line in lines[1:])
     reasons = (cause for part in stability.subsystems for cause in part.theory.verdict.reasons)
     # The names mean others.
     for reason in dict.fromkeys(cause for cause in reasons if cause.code is Because.OTHER_ANGLES):
@@ -337,7 +338,7 @@ def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     if word is Word.UNSTABLE_BUT_BORDERS and any(statement.word is not Word.UNSTABLE for statement in known):
         return  # the conditions of the others hold nowhere inside
     keys = list(condition_keys(part, number))
-    seen: list[Formula] = []
+    seen: list[Stood] = []
     last: list[_Condition] = []
     for k, case in enumerate(known[:MOST_CASES]):
         every, either = _conditions(case, seen, keys)
@@ -348,14 +349,17 @@ def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
         yield Link(say("further cases: [[count]]", count=str(len(known) - MOST_CASES)), "problem-6")
 
 
+#: A polynomial of a condition, and as what it stands there: in full, or by its name.
+Stood = tuple[Formula, Math]
+
 #: A condition, and where it stands in problem 6.
 _Condition = tuple[Relation, tuple[Numbered, ...]]
 
 
-def _conditions(case: CaseStatement, seen: list[Formula], keys: Keys) -> tuple[list[_Condition], list[_Condition]]:
+def _conditions(case: CaseStatement, seen: list[Stood], keys: Keys) -> tuple[list[_Condition], list[_Condition]]:
     """What all has to hold, and what of which something has to; nothing where there is too much to be read.
 
-    ``seen``: polynomials that stood before, as they stood.  Beside a long one coefficients are told by their letters.
+    ``seen``: polynomials that stood before, and as what.  Beside a long one coefficients are told by their letters.
     """
     statements = [*case.all_of, *case.any_of]
     if len(statements) > MOST_CONDITIONS or not all(
@@ -399,17 +403,15 @@ def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition
     return say(text, verdict=verdict, conditions=conditions)
 
 
-def _condition(item: Statement, long: bool, seen: list[Formula], keys: Keys) -> _Condition:
+def _condition(item: Statement, long: bool, seen: list[Stood], keys: Keys) -> _Condition:
     """The condition and its number; one that is too long to be read by its name, a coefficient beside it, too."""
     assert item.formula is not None
     name = label_of(item.bare)
+    number = _numbered(item.formula, item.relation, keys)
     if (long and isinstance(name, Symbol)) or not is_short(item.formula):
-        stands = OPPOSITE.get(item.relation, item.relation) if item.opposite else item.relation
-        return Relation(name, stands, 0), _numbered(item.formula, item.relation, keys)
-    inequality = _relation(item, seen)
-    left, relation, _ = inequality.parts
-    assert isinstance(left, Formula)
-    return inequality, _numbered(left, relation, keys)
+        seen.append((-item.formula if item.opposite else item.formula, name))
+        return Relation(name, OPPOSITE.get(item.relation, item.relation) if item.opposite else item.relation, 0), number
+    return _relation(item, seen), number
 
 
 def _numbered(left: Formula, sign: Math | str, keys: Keys) -> tuple[Numbered, ...]:
@@ -426,17 +428,18 @@ def _reversed(relation: Relation) -> tuple[Math | str, ...]:
     return (relation.parts[0], "<", 0) if relation.parts[1] == ">" else ()
 
 
-def _relation(item: Statement, seen: list[Formula]) -> Relation:
-    """p > 0; where -p or a multiple stood before, by that: p < 0; so, too, where all signs of p are minus."""
+def _relation(item: Statement, seen: list[Stood]) -> Relation:
+    """p > 0; where -p or a multiple stood before, by that: p < 0, v0 < 0; so, too, where all signs of p are minus."""
     assert item.formula is not None
     formula, reversed_ = item.formula, OPPOSITE.get(item.relation, item.relation)
-    for previous in seen:
+    for previous, told in seen:
         ratio = rational_ratio(formula.polynomial, previous.polynomial)
         if ratio is not None:
-            return Relation(previous, item.relation if ratio > 0 else reversed_, 0)
+            return Relation(told, item.relation if ratio > 0 else reversed_, 0)
     minus = all(coefficient < 0 for coefficient in formula.polynomial.coeffs())
-    seen.append(-formula if minus else formula)
-    return Relation(seen[-1], reversed_ if minus else item.relation, 0)
+    stood = -formula if minus else formula
+    seen.append((stood, stood))
+    return Relation(stood, reversed_ if minus else item.relation, 0)
 
 
 def _control(stabilisation: Stabilisation) -> Iterator[Inline]:

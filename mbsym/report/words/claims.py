@@ -127,9 +127,13 @@ def _differences(result: ClaimResult) -> Iterator[str]:
 def counterexample(example: Counterexample, text: str = "For example at [[at]]: [[shows]].") -> Said:
     """``For example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh).``"""
     at = [Relation(Name(name), "=", Number(value)) for name, value in example.at]
-    shows = [
+    shows: list[Inline] = [
+        Relation(difference, "=", Number(value))
+        for difference, (_, value) in zip(example.differences, example.shows, strict=False)
+    ]
+    shows += [
         say("the motion is [[verdict]]", verdict=worded(value)) if what == THE_MOTION else f"{what} = {value}"
-        for what, value in example.shows
+        for what, value in example.shows[len(shows) :]
     ]
     return say(text, at=at, shows=shows)
 

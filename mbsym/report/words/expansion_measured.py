@@ -54,7 +54,7 @@ class JudgedAverage:
 
 def contradicts(measurement: Measured | str) -> bool:
     """Whether the distances do not shrink as they would by the averaging theorem: the result must not be told then."""
-    from mbsym.simulation.averaged import NOISE
+    from mbsym.simulation.expanded import NOISE
 
     if isinstance(measurement, str) or not measurement.orders:
         return False
@@ -120,9 +120,9 @@ def _judged(small_parameters: SmallParameters, system: System) -> Iterator[Judge
 
 def average_or_why(system: System, averaged: System, average: Averaged, time: float | None = None) -> Measured | str:
     """The distance of the motion from the averaged one; why it was not measured."""
-    from mbsym.simulation.averaged import measured
+    from mbsym.simulation.expanded import average_measured
 
-    return _or_why(lambda: measured(system, averaged, average, time))
+    return _or_why(lambda: average_measured(system, averaged, average, time))
 
 
 def _or_why(measure: Callable[[], M]) -> M | str:

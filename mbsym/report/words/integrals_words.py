@@ -126,7 +126,9 @@ def sentences(polynomial_integrals: PolynomialIntegrals) -> Iterator[Said]:
         none = _NONE_BUT_LENGTHS if vectors else _NONE
         none = _NONE_WITHOUT if polynomial_integrals.aside and not vectors else none
         yield Said(
-            none[bool(polynomial_integrals.field.parameters)] if polynomial_integrals.complete else "None was found.",
+            none[bool(polynomial_integrals.field.free_parameters)]
+            if polynomial_integrals.complete
+            else "None was found.",
             values,
         )
         yield from _left_out(polynomial_integrals)
@@ -138,7 +140,7 @@ def sentences(polynomial_integrals: PolynomialIntegrals) -> Iterator[Said]:
         if not generator.independent:
             yield say(_DEPENDENT[generator.certainty], name=worded(title(generator)), weight=str(generator.weight))
     if polynomial_integrals.complete:
-        yield Said(_EVERY[bool(polynomial_integrals.aside)][bool(polynomial_integrals.field.parameters)], values)
+        yield Said(_EVERY[bool(polynomial_integrals.aside)][bool(polynomial_integrals.field.free_parameters)], values)
     yield from _left_out(polynomial_integrals)
     for count in polynomial_integrals.counts:
         if not count.complete:
@@ -154,7 +156,7 @@ def sentences(polynomial_integrals: PolynomialIntegrals) -> Iterator[Said]:
     ):
         yield Said(
             (_NO_OTHER_WITHOUT if polynomial_integrals.aside else _NO_OTHER)[
-                bool(polynomial_integrals.field.parameters)
+                bool(polynomial_integrals.field.free_parameters)
             ],
             values,
         )

@@ -10,7 +10,7 @@ from mbsym.algebra.tower import Element
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.small_parameter.result import Amplitude, Harmonics
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics, multiples
 from mbsym.report.content import (
     Definitions,
     Gaps,
@@ -40,6 +40,19 @@ DRIFTS = "What no equation needs follows by integration, but for its initial val
 _SERIES = (
     "Periodic solution up to order [[order]] of [[small]], led by [[leading]]: all variables as functions of "
     "[[phase]], and the rate of it. The coefficient of the power $k$ of [[small]] has the index $(k)$."
+)
+_SEVERAL = (
+    "Oscillation with the phases [[phases]] up to order [[order]] of [[small]], led by [[leading]]: all variables as "
+    "functions of the phases, and the rates of these. The coefficient of the power $k$ of [[small]] has the index "
+    "$(k)$."
+)
+_ALL_FREE = (
+    "Secular terms are removed up to this order with any amplitudes. Here [[amplitudes]] are what stands before the "
+    "cosines of the phases in [[leading]], where their sines do not stand."
+)
+_QUASIPERIODIC = (
+    "Sums of multiples of the frequencies are divided by. Whether there is such a motion, or only one near it for a "
+    "long time, is not looked at: the series are formal."
 )
 _FREE = (
     "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]], the value of [[leading]] "
@@ -123,7 +136,7 @@ _EXPECTED = "[[expected]] or more is expected of a right solution to this order,
 _TOO_SLOW = (
     "The errors of [[names]] fall more slowly than expected: [[small]] is too large there, or something is wrong."
 )
-_NOT_MEASURED = "The error of the periodic solution was not measured: [[why]]."
+_NOT_MEASURED = "The error of this solution was not measured: [[why]]."
 _NONE = "No periodic solution was expanded in powers of [[small]]: [[why]]."
 _NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations."
 
@@ -132,7 +145,7 @@ def opening(solution: Oscillating) -> Iterator[Said]:
     """What is expanded in what."""
     oscillation = solution.oscillation
     yield from scaled(oscillation.powers, oscillation.small)
-    yield Said(_SERIES, _values(solution))
+    yield Said(_SERIES if len(solution.phases) == 1 else _SEVERAL, _values(solution))
 
 
 def coefficients(solution: Oscillating) -> Iterator[Coefficient]:
@@ -143,9 +156,16 @@ def coefficients(solution: Oscillating) -> Iterator[Coefficient]:
         for order, harmonics in enumerate(series):
             if not harmonics.is_zero:
                 yield Coefficient(plain, plain != name, order, solution.wave(harmonics))
-    for order, x in enumerate((oscillation.tower.one, *oscillation.corrections)):
-        if not x.is_zero():
-            yield Coefficient(solution.phase, True, order, solution.formula(oscillation.frequency * x))
+    for phase, order, x in _rates(solution):
+        yield Coefficient(phase, True, order, solution.formula(x))
+
+
+def _rates(solution: Oscillating) -> Iterator[tuple[str, int, Element]]:
+    """Coefficients of the rates of the phases, but those that are zero."""
+    for name, phase in zip(solution.phases, solution.oscillation.phases, strict=True):
+        for order, x in enumerate((solution.oscillation.tower.one, *phase.corrections)):
+            if not x.is_zero():
+                yield name, order, phase.frequency * x
 
 
 def as_function(solution: Oscillating) -> Sums:
@@ -167,10 +187,9 @@ def collected(solution: Oscillating) -> Iterator[Relation]:
         for order, harmonics in enumerate(series):
             if not harmonics.is_zero:
                 yield Coefficient(plain, plain != name, order, solution.shortest(harmonics)).equation
-    for order, x in enumerate((oscillation.tower.one, *oscillation.corrections)):
-        if not x.is_zero():
-            value = solution.shortest(Harmonics.constant(oscillation.tower, oscillation.frequency * x))
-            yield Coefficient(solution.phase, True, order, value).equation
+    for phase, order, x in _rates(solution):
+        value = solution.shortest(Harmonics.constant(oscillation.tower, x))
+        yield Coefficient(phase, True, order, value).equation
 
 
 def denominators(solution: Oscillating, equations: Iterable[Relation]) -> Definitions | None:
@@ -209,7 +228,11 @@ def sentences(solution: Oscillating) -> Iterator[Said]:
     """What kind of solution it is, what was checked and where it holds."""
     series, values = solution.oscillation, _values(solution)
     least = [residual for residual in series.residuals if residual is not None]
-    if series.kind is Amplitude.FREE:
+    if len(series.phases) > 1:
+        yield say(_ALL_FREE, **values, amplitudes=tuple(solution.formula(phase.amplitude) for phase in series.phases))
+        if least or solution.taylor:
+            yield Said(_QUASIPERIODIC)
+    elif series.kind is Amplitude.FREE:
         yield say(_FREE, **values, amplitude=solution.formula(series.amplitude), sine=_wave(solution, False))
         if least or solution.taylor:  # else it is a solution
             yield Said(_FORMAL)
@@ -232,14 +255,15 @@ def sentences(solution: Oscillating) -> Iterator[Said]:
         yield Said(_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR, left)
     else:
         yield Said(_LEFT if least else _NOTHING, left)
-    if not solution.real:
-        rooted = any(d > 0 for d in series.frequency.top.degrees()[: -len(series.tower.parameters)])
-        real = Relation(solution.formula(series.frequency * series.frequency), ">", 0)
-        nonzero = Relation(solution.formula(series.frequency), "!=", 0)
+    for frequency in (phase.frequency for phase in series.phases if not solution.real):
+        rooted = any(d > 0 for d in frequency.top.degrees()[: -len(series.tower.parameters)])
+        real = Relation(solution.formula(frequency * frequency), ">", 0)
+        nonzero = Relation(solution.formula(frequency), "!=", 0)
         yield say(_REAL, **values, condition=real) if rooted else say(_NONZERO, **values, condition=nonzero)
     for divisor in solution.resonances:
         zeros = (Relation(numerator(solution, x), "=", 0) for x in divisor.parts)
-        gaps: Gaps = {"harmonic": str(divisor.harmonic), "order": str(divisor.order), "names": named(divisor.variables)}
+        turns = ", ".join(map(str, multiples(divisor.harmonic, len(series.phases))))
+        gaps: Gaps = {"harmonic": turns, "order": str(divisor.order), "names": named(divisor.variables)}
         gaps |= dict(zip(("condition", "other"), zeros, strict=False))
         yield Said(_RESONANCE if divisor.damping is None else _BOTH, gaps)
     for group, other in series.others:
@@ -251,8 +275,9 @@ def sentences(solution: Oscillating) -> Iterator[Said]:
 
 def _values(solution: Oscillating) -> Gaps:
     oscillation = solution.oscillation
-    names = {"small": Name(oscillation.small), "leading": Name(oscillation.leading), "phase": Name(solution.phase)}
-    return {"order": str(oscillation.order), **names}
+    leading = named(phase.leading for phase in oscillation.phases)
+    phases: Gaps = {"phase": Name(solution.phase), "phases": named(solution.phases)}
+    return {"order": str(oscillation.order), "small": Name(oscillation.small), "leading": leading, **phases}
 
 
 def _wave(solution: Oscillating, whole: bool) -> Formula:
@@ -264,9 +289,9 @@ def _wave(solution: Oscillating, whole: bool) -> Formula:
 
 
 def numerator(solution: Oscillating, value: Element) -> Formula:
-    """What has to vanish for a quotient to vanish."""
+    """What has to vanish for a quotient to vanish, without a number as a factor."""
     tower = solution.oscillation.tower
-    return solution.formula(tower.made(value.top, tower.context.constant(1)))
+    return solution.formula(tower.made(value.top / abs(value.top.factor()[0]), tower.context.constant(1)))
 
 
 def measured_sentences(solution: Oscillating, measured: MeasuredOrders | str) -> Iterator[Said]:

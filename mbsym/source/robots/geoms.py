@@ -25,7 +25,10 @@ _LEVEL = 1e-12
 
 @dataclass(frozen=True)
 class Angles:
-    """How a file means its angles: in degrees, and in which sequence (lower case: about the turned axes)."""
+    """How a file means its angles: in degrees, and in which sequence.
+
+    A lower letter turns about the turned axis, a capital about the fixed one.
+    """
 
     in_degrees: bool
     sequence: str
@@ -70,14 +73,15 @@ def orientation(element: Element, angles: Angles, reader: Reader) -> Turns:
 
 def _euler(element: Element, angles: Angles, reader: Reader) -> Turns:
     sequence = angles.sequence
-    if len(sequence) != 3 or set(sequence.lower()) - set("xyz") or not (sequence.islower() or sequence.isupper()):
+    if len(sequence) != 3 or set(sequence.lower()) - set("xyz"):
         reader.error("unsupported", f"the sequence {ascii_safe(sequence)} of Euler angles", element)
         return ()
     parts = reader.three(element, "euler", raw=True)
-    axes = ["xyz".index(letter) + 1 for letter in sequence.lower()]
-    turns = [(axis, angles.text(part, reader)) for axis, part in zip(axes, parts, strict=True)]
-    ordered = turns if sequence.islower() else turns[::-1]  # about fixed axes: the last turn comes first
-    return tuple(turn for turn in ordered if turn[1] != "0")
+    turns: list[tuple[int, str]] = []
+    for letter, part in zip(sequence, parts, strict=True):
+        first = letter.isupper()  # about a fixed axis: before all turns so far
+        turns.insert(0 if first else len(turns), ("xyz".index(letter.lower()) + 1, angles.text(part, reader)))
+    return tuple(turn for turn in turns if turn[1] != "0")
 
 
 def turns_onto(x: float, y: float, z: float) -> Turns:

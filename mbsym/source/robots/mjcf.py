@@ -297,13 +297,27 @@ class _Bodies:
             self.names.add(name)
             inside = self.childclass(element, childclass)
             yield self.link(name, element, parent, inside)
-            yield from self.links(element, name, inside, self.takes_geoms(element))
+            yield from self.links(element, name, inside, self.takes_geoms(element, inside))
         for site in above.all("site"):
             yield from self.site(self.defaults.of(site, childclass), parent)
 
-    def takes_geoms(self, body: Element) -> bool:
-        """Whether the matter of a body is that of its geoms."""
-        return self.from_geoms == "true" or (body.first("inertial") is None and self.from_geoms != "false")
+    def takes_geoms(self, body: Element, childclass: str) -> bool:
+        """Whether the matter of a body is that of its geoms: where none weighs, an <inertial> stands."""
+        if body.first("inertial") is None:
+            return self.from_geoms != "false"
+        return self.from_geoms == "true" and self.has_matter(body, childclass)
+
+    def has_matter(self, element: Element, childclass: str) -> bool:
+        """Whether geoms of a body weigh, those in its frames included."""
+        geoms = [self.defaults.of(geom, childclass) for geom in element.all("geom")]
+        inside = ((frame, self.childclass(frame, childclass)) for frame in element.all("frame"))
+        return any(self.counts(geom) for geom in geoms) or any(self.has_matter(*frame) for frame in inside)
+
+    def counts(self, geom: Element) -> bool:
+        """Whether a geom weighs, and is of a group whose matter is that of bodies."""
+        low, high = self.groups
+        in_group = low <= float(self.reader.number(geom, "group")) <= high
+        return in_group and geom.get("type", "sphere") not in ("plane", "hfield") and weighs(geom, self.reader)
 
     def frame(self, element: Element, parent: str, childclass: str, weighing: bool) -> Iterator[Link]:
         """A link without joints: what is inside is placed relative to it; its geoms belong to the body around it."""
@@ -362,7 +376,7 @@ class _Bodies:
         solid = [geom for geom in geoms if is_solid(geom)]
         shapes = tuple(shape_of(geom, self.angles, reader) for geom in solid)
         inertial = element.first("inertial")
-        if self.takes_geoms(element):
+        if self.takes_geoms(element, childclass):
             matter = self.of_geoms(geoms)
         else:
             matter = () if inertial is None else (self.inertial(inertial),)
@@ -382,11 +396,7 @@ class _Bodies:
     def of_geoms(self, geoms: list[Element]) -> tuple[Inertial, ...]:
         """The matter of a body's geoms; complains about what weighs something that is not known here."""
         reader, inertials = self.reader, []
-        for geom in geoms:
-            if not self.groups[0] <= float(reader.number(geom, "group")) <= self.groups[1]:
-                continue
-            if geom.get("type", "sphere") in ("plane", "hfield") or not weighs(geom, reader):
-                continue
+        for geom in filter(self.counts, geoms):
             if not is_solid(geom):
                 message = f"the mass of a {geom.get('type')} is not known here, and the body has no <inertial>"
                 reader.error("unsupported", message, geom, _SAVED)

@@ -38,8 +38,10 @@ class Request:
     equations are polynomials in sines and cosines the solution is exact; elsewhere each equilibrium is proved to exist
     in a small box.  The list says whether it is complete.  Orientations behind the singularity of the description's
     angles are found with other angles.  Each equilibrium is judged as in problem 6.  Under constraints the
-    reactions are eliminated, whatever the rank of the constraints, and singular positions are told as such.  For a body
-    about a fixed point the axes and rates of all permanent rotations are printed besides (Staude's cone).
+    reactions are eliminated, whatever the rank of the constraints, and singular positions are told as such.  Where
+    constraints tie velocities (rolling) steady motions go along the symmetries of the system, a bicycle's circles too:
+    rates that the description leaves out follow and are listed (yaw_dot).  For a body about a fixed point the axes and
+    rates of all permanent rotations are printed besides (Staude's cone).
 
     With --vary a parameter runs through an interval: how many equilibria there are between exact critical values,
     where branches fold, cross or split (named by exact derivatives), and how stable each is.  Written are branches.svg,

@@ -59,7 +59,8 @@ def lines(system: System, equilibria: Equilibria, permanent: PermanentRotations 
 
 def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Table:
     """A row each; columns that would be empty are left out."""
-    names = [name for name in system.coordinates if any(_has(x, name) for x in listed)]
+    every = (*system.coordinates, *system.velocities)
+    names = [name for name in every if any(_has(x, name) for x in listed)]
     others = any(x.coordinates_of for x in listed)
     boxes = any(x.proof != "exact" for x in listed)
     columns = [column("", right=True), *(column(labelled(name, unit_of(system, name)), right=True) for name in names)]

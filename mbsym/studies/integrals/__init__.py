@@ -99,6 +99,7 @@ class Found:
 
 def derive(context: Asked, request: Request, watch: Watch) -> Found:
     """Raises NotFit where the field has other variables or parameters than the request names."""
+    from mbsym.algebra.failures import NoClosedForm
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import allowed, integrals_of, invariant_relations, setting, special_relations
     from mbsym.problems.polynomial_integrals import along_of, cases_of
@@ -106,6 +107,13 @@ def derive(context: Asked, request: Request, watch: Watch) -> Found:
     watch("polynomial integrals")
     analysis = Analysis(context.system)
     there = setting(analysis, request.values, driven=True)
+    if there.field.roots and (request.vary is not None or request.cases or request.relations):
+        raise NoClosedForm(
+            "special parameters and invariant relations are looked for in equations whose numbers are rational, and "
+            "these hold [[roots]]",
+            roots=", ".join(name for name, _ in there.field.roots),
+            remedy="leave --vary, --cases and --relations out",
+        )
     if wrong := tuple(_unfit(there, request)):
         raise NotFit(wrong)
     integrals, axis = integrals_of(there, request.degree, request.weights), request.vary
@@ -162,9 +170,15 @@ def _lines(derived: Found) -> Iterator[Line | Block]:
 
 
 def _sections(derived: Found) -> Iterator[tuple[str, Iterator[str]]]:
-    from mbsym.studies.integrals.cases import along_lines, cases_lines
-    from mbsym.studies.integrals.levels import other_lines
-    from mbsym.studies.integrals.relations import darboux_lines, darboux_values, level_lines, relation_lines
+    from mbsym.studies.integrals.relations import (
+        along_lines,
+        cases_lines,
+        darboux_lines,
+        darboux_values,
+        level_lines,
+        other_lines,
+        relation_lines,
+    )
 
     there, integrals, relations = derived.there, derived.integrals, derived.relations
     if derived.line is not None:

@@ -1,4 +1,4 @@
-"""``mbsym integrals --relations``: what is printed of invariant relations."""
+"""``mbsym integrals`` with ``--relations``, ``--vary``, ``--cases``: relations, levels, special parameters."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ from mbsym.problems.polynomial_integrals.result import Obstacle
 from mbsym.report.words.integrals_words import (
     ALMOST,
     ANY_LENGTH,
+    BUT_FOR_ALGEBRAIC,
     NOT_LOOKED_FOR,
     NOTHING_KNOWN,
     all_values,
+    case_title,
+    conditions_text,
     equations_text,
     level_title,
     no_further,
@@ -24,10 +27,15 @@ from mbsym.report.words.integrals_words import (
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
     from mbsym.problems.polynomial_integrals import (
+        Along,
+        Cases,
         DarbouxAlong,
         DarbouxPolynomials,
+        OtherLevel,
+        OtherLevels,
         PolynomialIntegrals,
         Relations,
+        Special,
         ZeroLevels,
     )
 
@@ -180,3 +188,140 @@ def darboux_values(there: Setting, usual: PolynomialIntegrals, along: DarbouxAlo
             degree=usual.degree,
             length=ANY_LENGTH if there.vectors else "",
         )
+
+
+# ``mbsym integrals --vary`` and ``--cases``: what is printed of special parameters.
+
+
+def along_lines(there: Setting, usual: PolynomialIntegrals, along: Along) -> Iterator[str]:
+    """The values, what there is at each, and what is known of the others."""
+    if along.weights not in (None, usual.grading.weights):
+        yield weights_here(there.field.variables, along.weights or ())
+    length = "" if along.weights is None or not there.vectors else ANY_LENGTH
+    for special in along.values:
+        yield f"{along.name} = {special.value}"
+        yield from _special(there, special)
+    if not along.values:
+        yield no_further(along.name, along.low, along.high)
+    yield from undecided_at(along.name, along.undecided, along.irrational)
+    without = Message(" that does not contain [[names]]", names=", ".join(usual.aside)) if usual.aside else ""
+    if not along.usual:
+        yield Message(NOTHING_KNOWN, name=along.name)
+        return
+    text = (
+        "[[all]] of [[name]] from [[low]] to [[high]] with numerator and denominator up to 10^9 there is no further "
+        "integral of weight up to [[degree]][[without]] (proved[[length]]); irrational values are undecided."
+    )
+    ends: dict[str, object] = {"low": along.low, "high": along.high}
+    if along.whole:
+        text = (
+            "[[all]] of [[name]] from [[low]] to [[high]], rational or not, there is no further integral of weight up "
+            "to [[degree]][[without]] ([[how]][[length]])."
+        )
+        ends["how"] = BUT_FOR_ALGEBRAIC
+    ends["all"] = all_values(along.values or along.undecided)
+    yield Message(text, name=along.name, **ends, degree=usual.degree, without=without, length=length)
+
+
+def cases_lines(there: Setting, cases: Cases) -> Iterator[str]:
+    """The cases, and what the list is not."""
+    for case in cases.cases:
+        yield conditions_text(case, lambda p: str(there.formula(p)))
+        yield from _special(there, case.special)
+    if not cases.cases:
+        yield Message("no case was found")
+    yield Message(
+        "Families of parameters searched (some zero, some equal that play the same part): [[count]], with conditions "
+        "of degree up to 3 in each. The integrals are proved; that there are no other cases is not.",
+        count=cases.families,
+    )
+    if cases.left:
+        yield Message("Families beyond the budget (--budget): [[count]]; nothing is known of them.", count=cases.left)
+    if cases.unread:
+        yield Message(
+            "Families in which the rank also drops under conditions that were not found: [[count]].", count=cases.unread
+        )
+
+
+def _special(there: Setting, special: Special) -> Iterator[str]:
+    for weight, f in special.integrals:
+        yield joined(("  ", case_title(weight), ": ", there.formula(f)), "")
+    for level in special.levels:
+        for weight, f in level.integrals:
+            yield joined(("  ", level_title(weight, level), ": ", there.formula(f)), "")
+
+
+# ``mbsym integrals --relations``: what is printed of integrals where another one has a value that is not zero.
+
+
+def other_lines(there: Setting, other_levels: OtherLevels | None) -> Iterator[str]:
+    """What holds on single levels, and what is known of all others."""
+    if other_levels is None:
+        yield NOT_LOOKED_FOR
+        return
+    for level in other_levels.levels:
+        yield from _of(there, other_levels, level)
+    if not other_levels.levels:
+        yield Message("There is no integral in the list whose values could be looked at.")
+
+
+def _of(there: Setting, other_levels: OtherLevels, other: OtherLevel) -> Iterator[str]:
+    that = Message("the integral of weight [[weight]] ([[name]])", weight=other.level.weight, name=title(other.level))
+    power = other.power
+    value = that if power == 1 else Message("the power [[power]] of [[integral]]", power=power, integral=that)
+    vectors = bool(there.field.relations) and (not other_levels.fixed or other_levels.weights is not None)
+    if not other.looked:
+        yield Message("where [[integral]] is not zero there may be others: not found within the budget.", integral=that)
+        return
+    for at in other.values:
+        for weight, f in at.integrals:
+            yield Message(
+                "where [[integral]] is [[value]], one of weight [[weight]]: [[formula]]",
+                integral=value,
+                value=at.value,
+                weight=weight,
+                formula=there.formula(f),
+            )
+        if not at.complete:
+            yield Message("  where it is [[value]] there may be others: not found within the budget", value=at.value)
+    for number in other.undecided:
+        text = "whether there are others where [[integral]] is [[value]] is undecided"
+        yield Message(text, integral=value, value=number)
+    for p in other.irrational:
+        text = "undecided where [[integral]] is a zero c of [[polynomial]]"
+        yield Message(text, integral=value, polynomial=str(p).replace("x", "c"))
+    if not other.complete:
+        yield Message(
+            "where [[integral]] is not zero there may be others at almost all of its values: those are integrals that "
+            "hold everywhere, of higher weight or not found, with this value put in.",
+            integral=that,
+        )
+        return
+    if other.drops:
+        text = "where [[integral]] has single values, other than zero, there may be others: put in numbers with --set."
+        yield Message(text, integral=that)
+        return
+    known = {
+        "integral": that,
+        "degree": other_levels.degree,
+        "almost": ALMOST if there.field.parameters else "",
+        "length": ANY_LENGTH if vectors else "",
+    }
+    text = (
+        "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
+        "[[degree]][[almost]] ([[how]][[length]])."
+    )
+    if not other.by_rank:
+        known["how"] = Message("proved")
+    elif there.field.parameters:
+        known["how"] = Message("verified at random parameters modulo a prime")
+    elif other.whole:
+        known["how"] = BUT_FOR_ALGEBRAIC
+    else:
+        known["integral"] = value
+        text = (
+            "where [[integral]] has any other rational value but zero, with numerator and denominator up to 10^9, "
+            "there is none beyond those that hold everywhere of weight up to [[degree]][[almost]] (proved[[length]]); "
+            "other irrational values are undecided."
+        )
+    yield Message(text, **known)

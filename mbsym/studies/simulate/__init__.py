@@ -274,7 +274,7 @@ class Command(Request):
         tuple[str, ...],
         Names("NAMES", "Initial values that stay while the others are fitted to the constraints.", separated=True),
     ] = ()
-    format: Annotated[tuple[str, ...], formats("", FORMATS)] = ("csv", "svg", "png")
+    format: Annotated[tuple[str, ...], formats("", FORMATS)] = ("csv", "png")
     bodies: Annotated[bool, Flag(None, "What each body does, in bodies.csv; the same as format bodies-csv.")] = False
     animate: Annotated[bool, Flag(None, "animation.html and animation.gif; the same as formats html,gif.")] = False
     verbose: Annotated[bool, Flag(None, "Tell how it was done, too: method, setting, work, what rests.", "-v")] = False

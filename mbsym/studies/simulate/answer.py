@@ -74,10 +74,10 @@ def _motion(context: Asked, request: Command, result: Motion) -> Answer:
     how = method_lines(run) if request.verbose else ()
     lines: list[Line | Block] = [facts((*result_lines(run, context.file), *how))]
     if result.derivatives is not None:
-        from mbsym.report.runs.sensitivity_csv import sentences  # few ask for them
+        from mbsym.report.runs.orbit_files import sensitivity_sentences  # few ask for them
 
         say = Language(run.system.language).say
-        lines += [heading(say(Message("derivatives"))), facts(sentences(result.derivatives))]
+        lines += [heading(say(Message("derivatives"))), facts(sensitivity_sentences(result.derivatives))]
     last = [] if request.accuracy is None else _repeat(context, request, run.request)
     complaints, code = _ended(run, context.folder)
     if code is Exit.OK:
@@ -191,7 +191,6 @@ def _repeat(context: Asked, request: Command, run: simulation.Request) -> list[L
 def refused(error: Exception, context: Asked, request: Command) -> Refusal | None:
     """Of a run that cannot be begun."""
     from mbsym.algebra.failures import Failure, SingularPoint
-    from mbsym.numerics.closing import NothingMoves
     from mbsym.numerics.methods.interface import Breakdown
 
     say = Language(context.motion.system.language).say
@@ -205,9 +204,6 @@ def refused(error: Exception, context: Asked, request: Command) -> Refusal | Non
     if isinstance(error, SingularPoint):
         text = Message("singular at these values: [[why]]", why=error.reason)
         return Refusal(f"error[singular]: {say(text)}", Exit.BROKEN_DOWN, (nothing,))
-    if isinstance(error, NothingMoves):
-        hint = say(Message("hint: [[hint]]", hint=error.remedy))
-        return Refusal(f"error[{error.code}]: {say(error.reason)}", Exit.BROKEN_DOWN, (f"  {hint}", nothing))
     if isinstance(error, Failure):
         return not_closed(error, context.motion.system) or Refusal(
             f"error[no-program]: {say(Message('there is no program for these equations: [[why]]', why=error.reason))}",

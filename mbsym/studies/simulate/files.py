@@ -105,7 +105,7 @@ def motion_files(run: Simulation, derivatives: Sensitivities | None, formats: Se
     # Made when the table, which stands before it, has been written: until then there is no hash of it.
     files["simulation.json"] = (simulation_json(run, names, None if table is None else table.digest) for _ in range(1))
     if derivatives is not None:
-        from mbsym.report.runs.sensitivity_csv import sensitivity_csv  # few ask for them
+        from mbsym.report.runs.orbit_files import sensitivity_csv  # few ask for them
 
         files["sensitivity.csv"] = sensitivity_csv(derivatives)
     return Files(files, notes, stopped)
@@ -126,7 +126,7 @@ def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
         drawn = [Curve(run.trajectory, rates_along(run), words) for run, words in legend]
         files |= curves(drawn, kinds, _fixed(result.few))
     elif kinds and len(ensemble.times) > 1:
-        files |= fan_charts(ensemble, kinds)
+        files |= fan_charts(ensemble, variations_of(request), kinds)
     how = (variations_of(request), request.seed, request.sampling)
     return files | {"ensemble.json": ensemble_json(ensemble, *how, list(files))}
 

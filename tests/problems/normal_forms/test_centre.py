@@ -7,6 +7,7 @@ from fractions import Fraction
 import pytest
 from flint import acb, arb
 
+import mbsym
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.exact import on_pair, on_zero
@@ -62,7 +63,7 @@ def _nonzero(x: Element) -> float:
 
 def _coefficient(tower: Tower, field: list[Truncated], root: Element) -> Element:
     found = on_pair(field, root, tower.reciprocal, _nonzero)
-    real = (found.cubic + tower.conjugate(found.cubic, tower.place(root))) / 2
+    real = (found.cubic + tower.conjugate(found.cubic, tower.places(root.top)[0])) / 2
     return real / (found.lengths[0] * 4)
 
 
@@ -120,3 +121,14 @@ def test_one_zero_root() -> None:
     _, (x, y) = _space(2)
     found = on_zero([x * x + y * y, -y], lambda s: 1 / s, _size)
     assert abs(found.quadratic / found.lengths[0] - 1) < 1e-12
+
+
+@pytest.mark.parametrize("square", ["1", "2", "a**2", "(a - b)**2"])
+def test_two_real_roots_of_opposite_signs_are_no_frequency(square):
+    """x'' + x' + x = 0 beside y'' = square y: the sum of two roots is zero, but they are real; nothing breaks down."""
+    analysis = mbsym.loads(
+        "mbsym: 1\nname: saddle\nparameters: {a: real, b: real}\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}\n"
+        f"loads:\n  - potential: x**2/2 - ({square})*y**2/2\n  - rayleigh: x_dot**2/2\nmotion: {{x: 0, y: 0}}\n"
+    )
+    assert analysis.normal_forms.in_symbols is None

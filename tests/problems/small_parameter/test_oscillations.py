@@ -158,7 +158,7 @@ def test_constants_that_were_given_are_named_where_they_leave_nothing(tmp_path):
 
 def test_amplitudes_that_are_not_expressed_are_not_denied(tmp_path):
     """c6 adds 5 a^6/128: 5 a^6 - 72 a^4 + 144 a^2 - 64 is positive at a^2 = 1, negative at 0 and 4."""
-    with pytest.raises(NoClosedForm, match=r"unless \(5\*amplitude\*\*6") as raised:
+    with pytest.raises(NoClosedForm, match=r"unless 5\*amplitude\*\*6") as raised:
         oscillating(point(tmp_path, _damped_by("1 - 9*x**2 + 9*x**4 - x**6")), 1)
     assert not isinstance(raised.value, NotPeriodic)
 
@@ -210,7 +210,7 @@ def test_the_other_frequency_of_two_coupled_oscillators_is_named(tmp_path):
     told = oscillating(point(tmp_path, [COUPLED.format("eps*x**4/4")], "x, y"), 1, leading="x")
     assert str(told.formula(told.oscillation.frequency)) == "w"
     shown = {one.harmonic: str(numerator(told, one.value)) for one in told.resonances}
-    assert shown == {1: "2*k", 3: "2*(k - 4*w**2)"}
+    assert shown == {1: "k", 3: "k - 4*w**2"}
     x, y = (told.oscillation.series[told.oscillation.names.index(name)][1].wave(1)[0] for name in "xy")
     ring = told.ring
     a, k = told.formula(told.oscillation.amplitude).polynomial, ring.generator("parameter", "k")

@@ -43,6 +43,29 @@ def test_frequencies_about_l4_are_rouths(which, sign):
     assert all(order is not None and order > 1.9 for order in measured.orders)
 
 
+def test_numbers_under_roots_are_those_of_duffing():
+    """x'' + w^2 x + e h x^3 = 0: phase' = w + 3 e h a^2/(8 w) - 15 e^2 h^2 a^4/(256 w^3), w^2 = sqrt(2), h = sqrt(3).
+
+    Of x = a cos(phase) + ... with a the amplitude of the first harmonic; of the value at the phase 0 it is -21 for -15.
+    """
+    text = """
+mbsym: 1
+name: Duffing's oscillator with roots
+parameters: {e: positive}
+small parameter: e
+bodies:
+  - {name: P, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - potential: sqrt(2)*x**2/2 + e*sqrt(3)*x**4/4
+"""
+    found = oscillating(mbsym.loads(text), 2)
+    w, a = 2**0.25, 0.3
+    rates = (found.oscillation.frequency, *found.oscillation.corrections)  # the latter in units of the former
+    told = [float(found.formula(x).to_sympy().subs(found.symbols["#amplitude"], a).evalf(20)) for x in rates]
+    assert told == pytest.approx([w, 3 * 3**0.5 * a**2 / (8 * w**2), -21 * 3 * a**4 / (256 * w**4)], rel=1e-12)
+    assert found.oscillation.verified
+
+
 def test_the_conical_pendulum_sways_with_its_known_frequency():
     """w sqrt(1 + 3 cos^2 theta0) (E. T. Whittaker, section 93); psi' answers by the constant momentum:
 
