@@ -32,29 +32,32 @@ def _factored_among_its_own(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, 
 
     The generators keep their order, and so do terms and factors.
     """
-    whole, degrees = p.context(), p.degrees()
-    used = [k for k, degree in enumerate(degrees) if degree > 0]
-    if not used:
-        return _factored(p)
     if len(p) > LONGEST_KNOWN:
-        return _factored_anew(p, whole, used)
+        return _factored_anew(p)
     if len(_KNOWN) > MOST_KNOWN:
         _KNOWN.clear()
-    alike = _KNOWN.setdefault((whole, len(p), *degrees), [])  # polynomials have no hash
-    known = next((factors for x, factors in alike if x == p), None)
-    if known is None:
-        alike.append((p, known := _factored_anew(p, whole, used)))
-        del alike[:-MOST_ALIKE]
-    return known
+    alike, answers = _KNOWN.setdefault((p.context(), len(p)), ([], []))  # polynomials have no hash
+    if p in alike:
+        return answers[alike.index(p)]
+    alike.append(p)
+    answers.append(_factored_anew(p))
+    del alike[:-MOST_ALIKE], answers[:-MOST_ALIKE]
+    return answers[-1]
 
 
-#: Factors of polynomials that were asked for before, by what equal ones have in common: formulas are told in several
-#: media and tried in several letters, so that four of five questions are old ones.  Long polynomials hardly ever are.
-_KNOWN: dict[tuple[Any, ...], list[tuple[Polynomial, tuple[Any, list[tuple[Polynomial, int]]]]]] = {}
-MOST_KNOWN, MOST_ALIKE, LONGEST_KNOWN = 2_000, 20, 200
+_Factors = tuple[Any, list[tuple[Polynomial, int]]]
+
+#: Polynomials whose factors were asked for before, and these, by context and length: formulas are told in several media
+#: and tried in several letters, so that four of five questions are old ones.  Long polynomials hardly ever are.
+_KNOWN: dict[tuple[Any, int], tuple[list[Polynomial], list[_Factors]]] = {}
+MOST_KNOWN, MOST_ALIKE, LONGEST_KNOWN = 500, 200, 200
 
 
-def _factored_anew(p: Polynomial, whole: Any, used: list[int]) -> tuple[Any, list[tuple[Polynomial, int]]]:
+def _factored_anew(p: Polynomial) -> _Factors:
+    whole = p.context()
+    used = [k for k, degree in enumerate(p.degrees()) if degree > 0]
+    if not used:
+        return _factored(p)
     own = p
     if len(used) < whole.nvars():
         names = whole.names()

@@ -197,7 +197,8 @@ class Rewriter:
 
     def __init__(self, ring: Ring, letters: Letters) -> None:
         self._known: dict[tuple[int, str], tuple[Polynomial, Written | None]] = {}
-        self._equal: dict[tuple[int, ...], list[Polynomial]] = {}
+        self._equal: dict[int, list[Polynomial]] = {}
+        self._last: tuple[_Fraction, list[Any], set[int]] | None = None
         self.letters = letters
         self.work, self.most_read = (WORK, MOST_READ) if letters.requested else (WORK_UNASKED, MOST_READ_UNASKED)
         held = {g.name + ENDINGS.get(g.kind, "") for g in ring.generators if g.argument is None} | {"t", "pi"}
@@ -411,11 +412,11 @@ class Rewriter:
 
     def _first(self, polynomial: Polynomial) -> Polynomial:
         """The first that was met of equal polynomials, of which shapes are kept: steps lead to the same ones often."""
-        alike = self._equal.setdefault((len(polynomial), *polynomial.degrees()), [])  # they have no hash
-        known = next((x for x in alike if x == polynomial), None)
-        if known is None:
-            alike.append(known := polynomial)
-        return known
+        alike = self._equal.setdefault(len(polynomial), [])  # they have no hash
+        if polynomial in alike:
+            return alike[alike.index(polynomial)]
+        alike.append(polynomial)
+        return polynomial
 
     def _chain(self, fraction: _Fraction) -> _Fraction | None:
         """One symbol for each letter that is not made of letters alone: A = a C, B = b C, lz = n C r; None for no step.
@@ -473,17 +474,16 @@ class Rewriter:
 
     def _after(self, fraction: _Fraction, step: _Step) -> _Fraction | None:
         """The fraction after one step, in lowest terms; None where nothing changes."""
-        ring = self.ring
-        inside = [ring.generators[k].argument for k in occurring([fraction[0], *(x for x, _ in fraction[1])])]
-        if any(step.symbol in self._held((x, [])) for x in inside if x is not None):
+        ring, (degrees, buried) = self.ring, self._looked_at(fraction)
+        if step.symbol in buried:
             if step.degree > 1:
                 return None
             image = -ring.times(step.rest, ring.reciprocal(step.factor))
             return ring.fraction(ring.substitute(self._joined(fraction), {step.symbol: image}))
-        top, above = self._put(fraction[0], step)
+        top, above = self._put(fraction[0], step, degrees[0][step.symbol])
         changed, below = top != fraction[0], list[tuple[Polynomial, int]]()
-        for factor, exponent in fraction[1]:
-            other, more = self._put(factor, step)
+        for (factor, exponent), own in zip(fraction[1], degrees[1:], strict=True):
+            other, more = self._put(factor, step, own[step.symbol])
             changed |= other != factor
             above -= more * exponent
             below.append((other, exponent))
@@ -495,12 +495,22 @@ class Rewriter:
             below.append((step.factor, above))
         return self._lowest(top, below)
 
-    def _put(self, polynomial: Polynomial, step: _Step) -> tuple[Polynomial, int]:
-        """(p, k) with polynomial = p/factor**k by the step."""
-        ring, most = self.ring, int(polynomial.degrees()[step.symbol]) // step.degree
+    def _looked_at(self, fraction: _Fraction) -> tuple[list[Any], set[int]]:
+        """The degrees of the numerator and of the factors below, and what stands in adjoined generators: every step is
+        tried on one fraction, and a ring has many generators."""
+        if self._last is None or self._last[0] is not fraction:
+            polynomials = [fraction[0], *(x for x, _ in fraction[1])]
+            inside = (self.ring.generators[k].argument for k in occurring(polynomials))
+            buried = self.ring.held([x for x in inside if x is not None])
+            self._last = fraction, [x.degrees() for x in polynomials], buried
+        return self._last[1], self._last[2]
+
+    def _put(self, polynomial: Polynomial, step: _Step, degree: int) -> tuple[Polynomial, int]:
+        """(p, k) with polynomial = p/factor**k by the step, of that degree in its symbol."""
+        ring, most = self.ring, int(degree) // step.degree
         if most <= 0:
             return polynomial, 0
-        powers = _powers(ring, polynomial, step.symbol)
+        powers = _powers(ring, polynomial, step.symbol, int(degree))
         total, symbol = ring.zero, ring.context.gen(step.symbol)
         for power, coefficient in powers.items():
             times, left = divmod(power, step.degree)
@@ -558,15 +568,18 @@ def _constant(value: Expression, ring: Ring) -> bool:
     return all(name == "pi" or ring.has("parameter", name) for name in names(value))
 
 
-def _powers(ring: Ring, polynomial: Polynomial, index: int) -> Mapping[int, Polynomial]:
-    """By exponent of a generator, what stands before that power of it."""
+def _powers(ring: Ring, polynomial: Polynomial, index: int, degree: int | None = None) -> Mapping[int, Polynomial]:
+    """By exponent of a generator, what stands before that power of it; ``degree``: the highest, where it is known."""
     powers: dict[int, Polynomial] = {}
-    while polynomial != 0 and (power := int(polynomial.degrees()[index])):
+    power = int(polynomial.degrees()[index]) if degree is None else degree
+    while polynomial != 0 and power > 0:
         coefficient = polynomial
         for k in range(power):  # by derivatives: flint hands out the exponents of all generators, which are many
             coefficient = coefficient.derivative(index) / (k + 1)
-        powers[power] = coefficient
-        polynomial = polynomial - coefficient * ring.context.gen(index) ** power
+        if coefficient != 0:
+            powers[power] = coefficient
+            polynomial = polynomial - coefficient * ring.context.gen(index) ** power
+        power -= 1
     return powers if polynomial == 0 else {**powers, 0: polynomial}
 
 

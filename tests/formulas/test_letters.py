@@ -196,8 +196,8 @@ def test_putting_the_definitions_back_gives_the_ring_s_element():
 def test_an_error_in_a_step_is_caught(monkeypatch):
     right = Rewriter._put
 
-    def wrong(self, polynomial, step):
-        value, power = right(self, polynomial, step)
+    def wrong(self, polynomial, step, degree):
+        value, power = right(self, polynomial, step, degree)
         return (value + step.rest if power else value), power
 
     monkeypatch.setattr(Rewriter, "_put", wrong)
