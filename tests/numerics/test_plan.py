@@ -431,7 +431,7 @@ def test_a_reference_whose_coarse_runs_break_down_is_a_finer_one(monkeypatch: py
 def test_what_float64_has_no_room_for_is_measured_in_more_digits() -> None:
     """A millimetre about a place a thousand kilometres away: x = 10^6 + cos(t/1000)/1000, by hand.
 
-    Float64 knows x to a ten-millionth of that: its finer runs drowned in steps; "no run could be had to measure by".
+    Float64 knows x to a ten-millionth of that: finer runs drowned in steps, and "no run could be had to measure by".
     """
     text = """mbsym: 1
 name: far away
