@@ -32,10 +32,29 @@ def _factored_among_its_own(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, 
 
     The generators keep their order, and so do terms and factors.
     """
-    whole = p.context()
-    used = [k for k, degree in enumerate(p.degrees()) if degree > 0]
+    whole, degrees = p.context(), p.degrees()
+    used = [k for k, degree in enumerate(degrees) if degree > 0]
     if not used:
         return _factored(p)
+    if len(p) > LONGEST_KNOWN:
+        return _factored_anew(p, whole, used)
+    if len(_KNOWN) > MOST_KNOWN:
+        _KNOWN.clear()
+    alike = _KNOWN.setdefault((whole, len(p), *degrees), [])  # polynomials have no hash
+    known = next((factors for x, factors in alike if x == p), None)
+    if known is None:
+        alike.append((p, known := _factored_anew(p, whole, used)))
+        del alike[:-MOST_ALIKE]
+    return known
+
+
+#: Factors of polynomials that were asked for before, by what equal ones have in common: formulas are told in several
+#: media and tried in several letters, so that four of five questions are old ones.  Long polynomials hardly ever are.
+_KNOWN: dict[tuple[Any, ...], list[tuple[Polynomial, tuple[Any, list[tuple[Polynomial, int]]]]]] = {}
+MOST_KNOWN, MOST_ALIKE, LONGEST_KNOWN = 2_000, 20, 200
+
+
+def _factored_anew(p: Polynomial, whole: Any, used: list[int]) -> tuple[Any, list[tuple[Polynomial, int]]]:
     own = p
     if len(used) < whole.nvars():
         names = whole.names()

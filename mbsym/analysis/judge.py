@@ -32,10 +32,11 @@ from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
-from mbsym.model.substitution import displaced
+from mbsym.model.substitution import beside_rest, displaced
 from mbsym.model.system import System
+from mbsym.problems.equations import separate
 from mbsym.problems.stability.problem import ExactVerdicts
-from mbsym.problems.stability.verdict import Flaw, Verdict, undecided
+from mbsym.problems.stability.verdict import Flaw, Verdict, undecided, weakest
 from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
@@ -106,10 +107,39 @@ class Judge:
             return False
 
     def decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
-        """A verdict of step 1, with what the nonlinear system adds: steps 2 and 3.
+        """A verdict of step 1, with what the nonlinear system adds: steps 2 and 3, of separate equations by themselves.
 
         By step 2 only rational values are judged.
         """
+        whole = self._together(verdict, values)
+        if not (whole.word.open and self.may_add(whole) and self._parts):
+            return whole
+        try:
+            judged = [(names, judge(values)) for names, judge in self._parts]
+        except (Failure, *NOT_THERE):
+            return whole
+        apart = weakest([part for _, part in judged])
+        if apart.word.open:
+            return whole
+        alike = [(names, part) for names, part in judged if part.word is apart.word] or judged
+        about = Reason(Because.APART, ("; ".join(", ".join(names) for names, _ in alike),))
+        return replace(apart, reasons=tuple(sorted({*alike[0][1].reasons, about}, key=lambda reason: reason.rank)))
+
+    @cached_property
+    def _parts(self) -> list[tuple[list[str], Judge]]:
+        """Coordinates whose equations of motion know no others, and the judge of each; none where they are all one."""
+        of = self.analysis
+        equations = None if of.system.constraints else of.optional("equations")
+        parts = [] if equations is None else separate(of.scene, equations)
+        if len(parts) < 2:
+            return []
+        systems = [beside_rest(of.system, names) for names in parts]
+        return [
+            (names, Judge(type(of)(system, (), of.terms, suggests=False)))
+            for names, system in zip(parts, systems, strict=True)
+        ]
+
+    def _together(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
         if not self.may_add(verdict):
             return verdict
         constraints = bool(self.analysis.system.constraints)

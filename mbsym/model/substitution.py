@@ -139,6 +139,15 @@ def displaced(system: System, name: str, direction: Mapping[str, Fraction]) -> S
     return system
 
 
+def beside_rest(system: System, names: Sequence[str]) -> System:
+    """The motions of the coordinates ``names`` alone, while the others rest where they begin."""
+    system = _motions_alone(system)
+    begun = {entry.coordinate: entry.value for entry in system.motion}
+    for name in (coordinate for coordinate in system.coordinates if coordinate not in names):
+        system = _told_by(system, name, begun.get(name, ZERO), [x for x in system.coordinates if x != name])
+    return system
+
+
 def _motions_alone(system: System) -> System:
     """Without what only tells of coordinates, inputs at their values."""
     system = replace(held(system), claims=(), abbreviations=(), notation=(), outputs=(), reactions=())

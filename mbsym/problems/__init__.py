@@ -6,7 +6,7 @@ from collections.abc import Iterable
 TITLES = {
     "kinematics": "kinematics",
     "energy": "energy and force function",
-    "equations": "nonlinear Lagrange equations",
+    "equations": "equations of motion",
     "equilibrium": "equilibrium conditions",
     "linearisation": "linearisation",
     "stability": "stability",

@@ -34,6 +34,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.matrices import united
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
@@ -110,3 +111,20 @@ def convective_rate(scene: Scene, ring: Ring, x: Polynomial) -> Polynomial:
     for item in scene.system.prescribed:
         total = total + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
     return ring.reduce(total)
+
+
+def separate(scene: Scene, equations: Equations) -> list[list[str]]:
+    """The coordinates in sets, as many as there are, whose equations of motion know no others."""
+    ring, names = scene.ring, scene.system.coordinates
+    every = (*names, *scene.system.velocities)
+    owner = dict(zip(every, (*names, *names), strict=True))
+    parts = united(
+        {
+            name,
+            *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every)),
+            *(other for other, entry in zip(names, row, strict=True) if not entry.is_zero()),
+        }
+        for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True)
+    )
+    ordered = [[name for name in names if name in part] for part in parts]
+    return sorted(ordered, key=lambda part: names.index(part[0]))

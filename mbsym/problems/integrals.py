@@ -47,7 +47,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.kernel import kernel
-from mbsym.algebra.matrices import adjugate, determinant, united
+from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.message import Message, worded
@@ -60,7 +60,7 @@ from mbsym.mechanics.states import ball_states, rational_states
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import INERTIAL, System, acceleration_name
 from mbsym.problems.energy import Energy
-from mbsym.problems.equations import Equations, convective_rate
+from mbsym.problems.equations import Equations, convective_rate, separate
 
 #: T_2 - T_0 - U.  The energy T - U is the same where nothing moves as prescribed.
 ENERGY = "generalised energy"
@@ -215,31 +215,23 @@ def _energies_of_parts(scene: Scene, energy: Energy, equations: Equations) -> It
     ring, names = scene.ring, scene.system.coordinates
     every = (*names, *scene.system.velocities)
     owner = dict(zip(every, (*names, *names), strict=True))
-    parts = united(
-        {
-            name,
-            *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every)),
-            *(other for other, entry in zip(names, row, strict=True) if not entry.is_zero()),
-        }
-        for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True)
-    )
+    parts = separate(scene, equations)
     if len(parts) == 1:
         return
     shares = [ring.zero for _ in parts]
     for monomial, coefficient in _jacobi(scene, energy).to_dict().items():
         term = ring.context.from_dict({monomial: coefficient})
         knowing = {owner[x] for x in ring.dependencies(term, every)}
-        at = [k for k, part in enumerate(parts) if part & knowing]
+        at = [k for k, part in enumerate(parts) if knowing & {*part}]
         if len(at) > 1:
             return
         for k in at:
             shares[k] = shares[k] + term
-    for part, share in sorted(zip(parts, shares, strict=True), key=lambda one: min(map(names.index, one[0]))):
-        of = [name for name in names if name in part]
-        formula = _with_work(scene, equations, share, of)
+    for part, share in zip(parts, shares, strict=True):
+        formula = _with_work(scene, equations, share, part)
         if formula is not None:
-            title = Message("energy of [[names]]", names=", ".join(of))
-            yield Integral(title, OF_A_PART, " ".join(of), Formula(ring, formula), Certainty.PROVED)
+            title = Message("energy of [[names]]", names=", ".join(part))
+            yield Integral(title, OF_A_PART, " ".join(part), Formula(ring, formula), Certainty.PROVED)
 
 
 def _work(scene: Scene, power: Polynomial) -> Polynomial | None:

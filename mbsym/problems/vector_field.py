@@ -4,10 +4,11 @@
 
 Variables are the velocities or speeds u (under constraints in velocities those that are independent, in the equations
 without multipliers), and what X holds of positions, by itself or in functions: coordinates, unit vectors and
-quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the exponent, and the
-relation between those whose exponents are dependent; square roots, r^2 = p, r' = r p'/(2 p), and with one of them alone
-1/p; phases that are driven at a rate.  Each variable brings in what its own derivative holds.  Positions on which
-nothing depends are left out; constraints on positions are relations between those that are left, or give one by others.
+quaternions; the sine and cosine of an angle, with s^2 + c^2 = 1; exponentials, e' = e a' with a the exponent, those of
+a basis of the lattice that exponents span, or one relation between them; square roots, r^2 = p, r' = r p'/(2 p), and
+with one of them alone 1/p; for problem 9 reciprocals w = 1/p, w' = -w^2 p'; phases that are driven at a rate. Each
+variable brings in what its own derivative holds. Positions on which nothing depends are left out; constraints on
+positions are relations between those that are left, or give one by others.
 """
 
 from __future__ import annotations
@@ -339,22 +340,14 @@ class _State:
         return [*found, *tied, *between]
 
     def _between_reciprocals(self, places: Sequence[int]) -> list[Polynomial]:
-        """sum_k c_k prod_(j != k) w_j  of the reciprocals w of positions p, none of which is a variable, with
-
-        sum_k c_k p_k = 0.  Raises NoClosedForm where there are several such sums.
-        """
-        ring, parts = self.ring, [self.ring.generators[k].argument.to_dict() for k in places]
-        rows = [[part.get(m, fmpq(0)) for part in parts] for m in sorted({m for part in parts for m in part})]
-        if not rows or (count := len(places) - fmpq_mat(rows).rank()) == 0:
-            return []
-        if count > 1:
-            raise NoClosedForm("reciprocals of positions are related in several ways")
-        whole = [int((x * lcm(*(int(y.q) for y in row))).p) for row in rows for x in row]
-        column = [int(fmpz_mat(len(rows), len(places), whole).nullspace()[0][k, 0]) for k in range(len(places))]
-        held = [(ring.context.gen(k), c) for k, c in zip(places, column, strict=True) if c]
-        terms = (prod((x for x, _ in held if x is not w), start=ring.one) * c for w, c in held)
-        total = sum(terms, ring.zero)
-        return [total / total.leading_coefficient()]
+        """sum_k c_k prod_(j != k) w_j  of the reciprocals w of positions p with  sum_k c_k p_k = 0, if there is one."""
+        ring = self.ring
+        columns, count = _in_monomials([ring.generators[k].argument for k in places]).nullspace()
+        held = (
+            [(ring.context.gen(k), c) for n, k in enumerate(places) if (c := int(columns[n, 0]))] if count == 1 else []
+        )
+        terms = [prod((x for x, _ in held if x is not w), start=ring.one) * c for w, c in held]
+        return [sum(terms, ring.zero) / sum(terms, ring.zero).leading_coefficient()] if terms else []
 
     def _refuse_dependent(self, functions: Sequence[int], others: Sequence[int], tied: int) -> None:
         """Raises NoClosedForm where variables are functions of each other but for relations: ranks would mislead."""
@@ -452,18 +445,22 @@ class _State:
 
     def _exponents_of(self, places: Sequence[int]) -> fmpz_mat:
         """What moves of the exponents, in columns: rational multiples of monomials, a row for each, times a number."""
-        exponents = [self._exponent(k) for k in places]
         gens = zip(self.ring.generators, self.ring.context.gens(), strict=True)
         still = [x if g.kind in ("parameter", "root") else self.ring.zero for g, x in gens]
-        moving = [(a - a.compose(*still)).to_dict() for a in exponents]
-        rows = [[a.get(m, fmpq(0)) for a in moving] for m in sorted({m for a in moving for m in a})]
-        whole = [int((x * lcm(*(int(y.q) for y in row))).p) for row in rows for x in row]
-        return fmpz_mat(len(rows), len(places), whole)
+        return _in_monomials([a - a.compose(*still) for a in map(self._exponent, places)])
 
     def _are_one(self, places: Sequence[int], powers: Sequence[int]) -> bool:
         """Whether the product of these powers of exponentials is 1."""
         ring = self.ring
         return ring.vanishes(ring.dot(list(map(self._exponent, places)), list(map(ring.number, powers))))
+
+
+def _in_monomials(polynomials: Sequence[Polynomial]) -> fmpz_mat:
+    """Their coefficients in columns, a row for each monomial, times a number."""
+    parts = [p.to_dict() for p in polynomials]
+    rows = [[part.get(m, fmpq(0)) for part in parts] for m in sorted({m for part in parts for m in part})]
+    whole = [int((x * lcm(*(int(y.q) for y in row))).p) for row in rows for x in row]
+    return fmpz_mat(len(rows), len(parts), whole)
 
 
 def _free(

@@ -313,8 +313,10 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     axes_node, angles_node = fields.require("axes"), fields.require("angles")
     if axes_node is None or angles_node is None:
         return Rotation()
-    axes = [_axis(item, reading) for item in reading.lone_or_items(axes_node, "'axes'")]
-    angle_items = reading.lone_or_items(angles_node, "'angles'")
+    errors = reading.errors
+    axis_items, angle_items = reading.lone_or_items(axes_node, "'axes'"), reading.lone_or_items(angles_node, "'angles'")
+    listed = reading.errors == errors
+    axes = [_axis(item, reading) for item in axis_items]
     angles = [reading.expression(item, ANGLE) for item in angle_items]
     if len(axes) > 3:
         reading.error("wrong-shape", "a joint has at most three rotation axes", axes_node.span, "add a massless body")
@@ -322,7 +324,8 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
         message = Message(
             "each axis has its angle: [[axes]] wanted, not [[angles]]", axes=len(axes), angles=len(angles)
         )
-        reading.error("wrong-shape", message, angles_node.span, comma_hint(angle_items, len(axes)))
+        if listed:
+            reading.error("wrong-shape", message, angles_node.span, comma_hint(angle_items, len(axes)))
         return Rotation()
     for axis, angle, item in zip(axes, angles, angle_items, strict=True):
         if axis == 0 and not is_number(angle, 0):

@@ -67,13 +67,16 @@ def kind_of_abbreviation(value: Expression, reading: Reading) -> str:
 
 
 def _about_oscillations(claims: Node | None) -> bool:
-    for item in claims.items if isinstance(claims, Sequence) else ():
-        for entry in item.entries if isinstance(item, Mapping) else ():
-            if entry.key.text == "claim" and isinstance(entry.value, Scalar):
-                kind = CLAIMS.get(" ".join(entry.value.text.lower().split()))
-                if kind is not None and kind.oscillates:
-                    return True
-    return False
+    kinds = map(_kind, claims.items if isinstance(claims, Sequence) else ())
+    return any(kind is not None and kind.oscillates for kind in kinds)
+
+
+def _kind(item: Node) -> ClaimKind | None:
+    """The kind that a claim says it is of, if there is one."""
+    for entry in item.entries if isinstance(item, Mapping) else ():
+        if entry.key.text == "claim" and isinstance(entry.value, Scalar):
+            return CLAIMS.get(_KINDS.get(" ".join(entry.value.text.lower().split()), ""))
+    return None
 
 
 _CONSTANTS = ("parameter", "notation", "abbreviation")
@@ -134,7 +137,9 @@ def read_claims(
 
 def _claims(item: Node, bodies: list[str], system: System, reading: Reading, small: bool) -> list[Claim]:
     hint = "write for example {claim: kinetic energy, equals: m*x_dot**2/2, place: eq. (1)}"
-    fields = reading.fields(item, "a claim", CLAIM, hint)
+    kind = _kind(item)
+    unfit = [key for key, there in keys_of(kind).items() if not there] if kind is not None else []
+    fields = reading.fields(item, "a claim", CLAIM, hint, unfit)
     node = fields.require("claim", f"one of: {', '.join(CLAIMS)}")
     word = None if node is None else reading.word(node, "a claim", _KINDS)
     if word is None and isinstance(node, Scalar):
@@ -143,8 +148,8 @@ def _claims(item: Node, bodies: list[str], system: System, reading: Reading, sma
     if word is None:
         _check_names(fields, reading)
         return []
-    kind = _KINDS[word]
-    reader = _Reader(kind, CLAIMS[kind], fields, bodies, system, reading, small)
+    name = _KINDS[word]
+    reader = _Reader(name, CLAIMS[name], fields, bodies, system, reading, small)
     return reader.conditions() if reader.kind.inequality else [reader.single()]
 
 

@@ -17,6 +17,9 @@ from mbsym.source.text_lines import is_text
 from mbsym.source.text_reader import read_text
 from mbsym.source.yaml_reader import Extent, read_yaml
 
+#: What cannot be read at all: whatever else is complained of at its place follows from that.
+_UNREAD = ("tag", "control-character")
+
 #: So many complaints are shown, in all and of one kind; when so many were met, reading stops.
 MAX_COMPLAINTS = 200
 MAX_OF_A_KIND = 40
@@ -30,8 +33,14 @@ class _BoundedComplaints(Complaints):
         super().__init__()
         self.kept: Counter[tuple[str, str]] = Counter()
         self.more: Counter[tuple[str, str]] = Counter()
+        self.unread: set[tuple[int, int]] = set()
 
     def _keep(self, complaint: Complaint) -> None:
+        place = (0, 0) if complaint.span is None else (complaint.span.line, complaint.span.column)
+        if complaint.code in _UNREAD:
+            self.unread.add(place)
+        elif place in self.unread:
+            return
         kind = complaint.severity, complaint.code
         if self.kept[kind] < MAX_OF_A_KIND:
             self.kept[kind] += 1

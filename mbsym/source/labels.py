@@ -60,7 +60,10 @@ BODY = {
 EXPRESSION = "expression"
 
 #: What is said in words of any language.
-FREE = ("mechanical system", "description", "source", "name")
+FREE = ("mechanical system", "description", "source", "label", "name")
+
+#: Keys of records of which the same is true, or which name files.
+FREE_KEYS = ("meaning", "file")
 
 
 def _inside(kinds: Mapping[str, Kind]) -> Iterator[tuple[str, Type]]:

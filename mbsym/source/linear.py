@@ -51,7 +51,7 @@ def read_linear(fields: Fields, coordinates: tuple[str, ...], inputs: int, readi
     for whole, parts in PARTS.items():
         if whole in fields.entries:
             fields.exclude(whole, parts)
-    if not {*MATRICES} - {"B"} & {*fields.entries}:
+    if fields.sound and not {*MATRICES} - {"B"} & {*fields.entries}:
         hint = "stiffness K, damping D, gyroscopic G, ...: K: [[k1, 0], [0, k2]]"
         reading.error("missing-key", "a linear system without matrices: x'' = 0", fields.span, hint)
     matrices, rows = [], len(coordinates)

@@ -16,6 +16,9 @@ from mbsym.expressions.safe import hides
 MAX_TEXT = 256 * 1024
 MAX_DEPTH = 16
 
+#: What stands for no value in YAML, where it is not quoted.
+NULL = ("~", "null", "Null", "NULL")
+
 
 @dataclass(frozen=True, slots=True)
 class Scalar:

@@ -362,12 +362,18 @@ class Reading:
             self.error("too-large", Message(text, what=worded(what), most=MAX_ENTRIES, **count), node.span)
             raise placed.TooManyComplaints
 
-    def fields(self, node: Node, what: str, known: Mapping[str, Key], hint: str | None = None) -> Fields:
-        """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
+    def fields(
+        self, node: Node, what: str, known: Mapping[str, Key], hint: str | None = None, unfit: Container[str] = ()
+    ) -> Fields:
+        """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles.
+
+        None is taken for one of those that are ``unfit`` beside the others.
+        """
         entries: dict[str, Entry] = {}
         misspelt: dict[str, Entry] = {}
         written_keys = keys_of(node)
-        left = [key for key in known if key not in written_keys]
+        fitting = [key for key in known if key not in unfit]
+        left = [key for key in fitting if key not in written_keys]
         other = self._other_keys(node, what, known)
         if hint is None and len(known) <= MOST_OTHER:
             hint = Message("the keys are: [[known]]", known=", ".join(known))
@@ -381,7 +387,7 @@ class Reading:
                 keys = (
                     Message("did you mean '[[other]]'?", other=guess)
                     if guess
-                    else unsupported or Message("the keys are: [[known]]", known=", ".join(known))
+                    else unsupported or Message("the keys are: [[known]]", known=", ".join(fitting))
                 )
                 message = Message(
                     "unknown key [[what]] in [[what2]]", what=ascii_safe(entry.key.text), what2=worded(what)

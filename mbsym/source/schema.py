@@ -16,21 +16,25 @@ Schema = dict[str, Any]
 
 _NAME = "^[A-Za-z][A-Za-z0-9_]*$"
 
+#: What a text has to hold, if it is one: a blank one is no value.
+_SOMETHING = r"\S"
+
 _EXPRESSION: Schema = {
     "type": ["string", "number"],
+    "pattern": _SOMETHING,
     "description": "numbers, names, + - * / **, parentheses, sin cos tan sqrt exp log atan sinh cosh tanh; "
     "in loads abs sign step pulse and tables",
 }
 
 #: Types that have no parts.
 _PLAIN: dict[type[grammar.Type], Schema] = {
-    grammar.Text: {"type": ["string", "number", "boolean"]},
-    grammar.BodyName: {"type": ["string", "number", "boolean"]},
-    grammar.Unit: {"type": ["string", "integer"]},
+    grammar.Text: {"type": ["string", "number", "boolean"], "pattern": _SOMETHING},
+    grammar.BodyName: {"type": ["string", "number", "boolean"], "pattern": _SOMETHING},
+    grammar.Unit: {"type": ["string", "integer"], "pattern": _SOMETHING},
     grammar.Name: {"type": "string", "pattern": _NAME},
-    grammar.Index: {"type": ["string", "integer"]},
-    grammar.About: {"type": ["string", "integer"]},
-    grammar.Equation: {"type": "string"},
+    grammar.Index: {"type": ["string", "integer"], "pattern": _SOMETHING},
+    grammar.About: {"type": ["string", "integer"], "pattern": _SOMETHING},
+    grammar.Equation: {"type": "string", "pattern": _SOMETHING},
     grammar.Nothing: {"type": "null"},
 }
 
@@ -62,7 +66,7 @@ def _schema(value: grammar.Type, definitions: Schema) -> Schema:
             number = {"type": "integer", "minimum": least, **({} if most is None else {"maximum": most})}
             return {"anyOf": [number, {"type": "string", "pattern": f"^{'-?' if least < 0 else ''}[0-9]{{1,4}}$"}]}
         case grammar.String(longest):
-            return {"type": "string", **({} if longest is None else {"maxLength": longest})}
+            return {"type": "string", "pattern": _SOMETHING, **({} if longest is None else {"maxLength": longest})}
         case grammar.Flag(false):
             return {"enum": [True, False, "true", "false"]} if false else {"const": True}
         case grammar.Listed(item, least, most, unique):

@@ -143,6 +143,7 @@ class Scope:
         if not self.is_name(name, span):
             if name and not is_rate(name):
                 self.kinds.setdefault(name, kind)  # one complaint about it is enough
+                self.assumed.add(name)
             return False
         if name in self.kinds:
             taken = _KINDS[self.kinds[name]]
@@ -280,14 +281,14 @@ class Scope:
         if name.endswith(ACCELERATION_ENDING) and "acceleration" not in allowed.kinds:
             none = "this claim holds none" if "abbreviation" in allowed.kinds else "they stand in no description"
             return Message("accelerations are what the equations are solved for; [[why]]", why=none)
-        known = [kind for kind in self.kinds if self.kinds[kind] in allowed.kinds and kind not in self.beside]
+        known = [other for other, kind in self.kinds.items() if kind in allowed.kinds and other not in self.beside]
         if "velocity" in allowed.kinds:
             known += [velocity_name(coordinate) for coordinate in self.of_kind("coordinate")]
         if "acceleration" in allowed.kinds:
             known += [acceleration_name(coordinate) for coordinate in self.of_kind("coordinate")]
         if self.kinds.get(without_velocity(name)) == "input":
             return "an input is any function of time: what depends on its rate is no load of this system"
-        close = did_you_mean(name, known)
+        close = did_you_mean(name, filter(_IDENTIFIER.match, known))
         if close is not None:
             return close
         if self.kinds.get(without_velocity(name)) == "prescribed":
@@ -399,6 +400,8 @@ def why_no_name(name: str) -> tuple[str, str | None] | None:
         return "it is a number", None
     if name == "t":
         return "it is the time", None
+    if name.lower() in ("true", "false", "null"):
+        return "it is a word of YAML, and no text", Message("write [[name]]1", name=name)
     if keyword.iskeyword(name):
         hint = Message("write lam or lambda1") if name == "lambda" else Message("write [[name]]1", name=name)
         return "it is a reserved word of Python, in which results are written", hint

@@ -30,7 +30,7 @@ def lines_of(text: str) -> Iterator[Scalar]:
 _SIGNS = {"\u2212": "-", "\u00d7": "*", "\u00b7": "*", "\u22c5": "*", "\u00b2": "**2", "\u00b3": "**3"}
 
 #: Those, lowered digits, and Greek letters (those of mathematical alphabets, too) with the lowered digits behind them.
-_PRINTED = re.compile(
+PRINTED = re.compile(
     f"[{''.join(_SIGNS)}]|[\u2080-\u2089]+|[\u0370-\u03ff\u1f00-\u1fff\U0001d6a8-\U0001d7cb][\u2080-\u2089]*"
 )
 
@@ -40,13 +40,12 @@ def _in_latin(line: Scalar) -> Scalar:
 
     Each letter of a name stands where the Greek one does.
     """
-    words = line.text.partition("meaning")[0]
     label, _ = label_of(line)
-    if _PRINTED.search(words) is None or (label is not None and word_of(label.text) in FREE):
+    if PRINTED.search(line.text) is None or (label is not None and word_of(label.text) in FREE):
         return line
     text, columns, end = "", list[int](), 0
-    for match in re.finditer(rf'"(?:[^"\\]|\\.)*"|{_PRINTED.pattern}', words):
-        named = _SIGNS.get(match[0]) or in_latin(match[0])
+    for match in re.finditer(rf'"(?:[^"\\]|\\.)*"|meaning.*|{PRINTED.pattern}', line.text):
+        named = (_SIGNS.get(match[0]) or in_latin(match[0])) if PRINTED.match(match[0]) else ""
         name = named if named.isalnum() or match[0] in _SIGNS else match[0]  # some letters have none
         text += line.text[end : match.start()] + name
         columns += range(end, match.start())

@@ -15,7 +15,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints, Span
 from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
-from mbsym.source.labels import ASSUMPTIONS, BODY, FREE, HEADER, SECTIONS
+from mbsym.source.labels import ASSUMPTIONS, BODY, FREE, FREE_KEYS, HEADER, SECTIONS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
 from mbsym.source.text_kinds import claim, filled, items, of_kind, row, split
@@ -181,19 +181,19 @@ class TextReader:
         """``a; key = b``: a mapping; a single bare value stays what it is."""
         parts = list(split(value, ";"))
         if len(parts) == 1 and label_in(parts[0])[0] is None:
-            return self.unquoted(parts[0]) if first == "meaning" else parts[0]
+            return self.unquoted(parts[0]) if first in FREE_KEYS else parts[0]
         entries = []
         for index, part in enumerate(parts):
             label, rest = label_in(part)
             if label is None and index == 0:
                 key = "value" if first == "sign" and part.text[:1].isdigit() else first
-                read = self.unquoted(part) if key == "meaning" else part
+                read = self.unquoted(part) if key in FREE_KEYS else part
                 entries.append(Entry(Scalar(key, part.span, literal=False), read))
             elif label is None:
                 self.error("syntax", "here 'key = value' is wanted", part.span)
             else:
                 word = word_of(label.text)
-                entries.append(Entry(key_of(label, word), self.unquoted(rest) if word == "meaning" else rest))
+                entries.append(Entry(key_of(label, word), self.unquoted(rest) if word in FREE_KEYS else rest))
         return Mapping(tuple(entries), value.span)
 
     def table(self, read: Node) -> Node:

@@ -7,13 +7,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, text
 from mbsym.model.claims import BODY as ABOUT_BODY
 from mbsym.model.claims import CLAIMS
 from mbsym.model.system import Body, System
 from mbsym.source.grammar import Named
 from mbsym.source.keys import ALIASES, LOADS
-from mbsym.source.labels import ASSUMPTIONS, BODY, HEADER, NUMBERED, SECTIONS
+from mbsym.source.labels import ASSUMPTIONS, BODY, FREE, FREE_KEYS, HEADER, NUMBERED, SECTIONS
+from mbsym.source.placed import Scalar
+from mbsym.source.text_kinds import split
+from mbsym.source.text_lines import PRINTED
 from mbsym.source.yaml_writer import Shape as Data
 from mbsym.source.yaml_writer import body_shape, system_shape, vector_shape
 
@@ -125,8 +129,7 @@ def _header(key: str, value: Data, numbers: dict[str, str]) -> list[Line]:
         value = [numbers.get(_flat(body), _flat(body)) for body in value]
     if key == "small parameter":
         return [(label, small(value))]
-    free_text = isinstance(value, str) and key in ("name", "description", "source", "label")
-    return [(label, free(value) if free_text and isinstance(value, str) else _braces(value))]
+    return [(label, free(value, kept=True) if label in FREE and isinstance(value, str) else _braces(value))]
 
 
 def small(value: Data) -> str:
@@ -153,7 +156,8 @@ def record(value: dict[str, Data], first: str | None = None) -> str:
     """``positive; value = 2; meaning = length``: the first value without its key where that goes without saying."""
     parts = []
     for index, (key, inner) in enumerate(value.items()):
-        written = free(inner) if key == "meaning" and isinstance(inner, str) else text_of(inner)
+        free_text = key in FREE_KEYS and isinstance(inner, str)
+        written = free(inner, key == "meaning") if free_text and isinstance(inner, str) else text_of(inner)
         parts.append(written if index == 0 and key == first and len(value) > 1 else f"{key} = {written}")
     return "; ".join(parts)
 
@@ -169,9 +173,14 @@ def text_of(value: Data) -> str:
     return record(value) if isinstance(value, dict) else _flat(value)
 
 
-def free(value: str) -> str:
-    """Text for people: in double quotes where it could be taken for something else."""
-    if value and value == value.strip() and "\n" not in value and not any(mark in value for mark in ';"#\\='):
+def free(value: str, kept: bool = False) -> str:
+    """Text for people: in double quotes where it could be taken for something else.
+
+    Greek letters and printed signs could be for names and operators, unless they are ``kept`` where it stands.
+    """
+    plain = value == value.strip() and "\n" not in value and not any(mark in value for mark in ';"#\\=')
+    apart = len(list(split(Scalar(f"{value};", Span(1, 1)), ";"))) == 2  # every bracket is closed
+    if value and plain and apart and (kept or PRINTED.search(value) is None):
         return value
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'

@@ -16,7 +16,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.safe import hides
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
-from mbsym.source.placed import MAX_DEPTH, Entry, Mapping, Node, Scalar, Sequence
+from mbsym.source.placed import MAX_DEPTH, NULL, Entry, Mapping, Node, Scalar, Sequence
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -179,17 +179,23 @@ class _Composer:
             return self.mapping(event, depth)
         return self.scalar(event)
 
+    def value(self, event: Any, depth: int) -> Node:
+        """The node of a value; YAML's words for none, without quotes, are no text."""
+        if isinstance(event, yaml.ScalarEvent) and not event.style and event.value in NULL:
+            event.value = ""
+        return self.node(event, depth)
+
     def sequence(self, start: Any, depth: int) -> Sequence:
         items: list[Node] = []
         while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
-            items.append(self.node(event, depth + 1))
+            items.append(self.value(event, depth + 1))
         return Sequence(tuple(items), self.collection_span(start, event, items[0].span if items else None))
 
     def mapping(self, start: Any, depth: int) -> Mapping:
         entries: list[Entry] = []
         while not isinstance(event := next(self.events), yaml.MappingEndEvent):
             key = self.node(event, depth + 1)
-            value = self.node(next(self.events), depth + 1)
+            value = self.value(next(self.events), depth + 1)
             if isinstance(key, Scalar):
                 entries.append(Entry(key, value))
             else:
@@ -229,8 +235,9 @@ class _Composer:
             self.complaints.error("alias", message, self.span(event), "write the value out, or quote the text")
         if event.tag is not None:
             hint = "leave the tag out, or quote the text"
+            tag = event.tag.replace("tag:yaml.org,2002:", "!!")
             self.complaints.error(
-                "tag", Message("tags are not used in descriptions: '[[tag]]'", tag=event.tag), self.span(event), hint
+                "tag", Message("tags are not used in descriptions: '[[tag]]'", tag=tag), self.span(event), hint
             )
 
     def span(self, event: Any) -> Span:

@@ -36,6 +36,7 @@ from mbsym.model.system import Shape as Look
 from mbsym.source.grammar import Ends, Equation, Formula, Key, Kind, Named, Record, Same, Type
 from mbsym.source.grammar import Vector as VectorType
 from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
+from mbsym.source.placed import NULL
 
 Shape = Union[str, list["Shape"], dict[str, "Shape"]]  # noqa: UP007 (a quoted name takes no |)
 
@@ -409,7 +410,8 @@ def _key(key: str) -> str:
 
 def scalar_text(value: str) -> str:
     """Plain where every YAML reader agrees on it, else in double quotes."""
-    if _PLAIN.match(value) and not value.startswith(_DANGEROUS_STARTS) and value == value.strip() and value != "-":
+    plain = _PLAIN.match(value) and not value.startswith(_DANGEROUS_STARTS) and value == value.strip()
+    if plain and value not in ("-", *NULL):
         return value
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'

@@ -8,6 +8,7 @@ from random import Random
 import pytest
 from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
+from mbsym.algebra import factors
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm
 
@@ -59,3 +60,24 @@ def test_the_factors_are_those_that_the_library_finds_by_itself(over: str, gener
         assert irreducible_factors(product) == (unit, list(powers))
         irreducible += len(powers) == 1 and powers[0][1] == 1
     assert 10 < irreducible < 100
+
+
+def test_what_was_asked_before_is_not_taken_for_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of one length and one degree in each generator, in contexts of other names and numbers; each factored once."""
+    anew = []
+    honest = factors._factored_anew
+    monkeypatch.setattr(factors, "_KNOWN", {})
+    monkeypatch.setattr(factors, "_factored_anew", lambda p, *more: anew.append(p) or honest(p, *more))
+    for over in CONTEXTS.values():
+        for names in (["x", "y"], ["x", "z"]):
+            x, y = over.get(names, Ordering.lex).gens()
+            for _ in range(2):
+                for number in range(1, factors.MOST_ALIKE):
+                    unit, powers = irreducible_factors(x**2 - number**2 * y**2)
+                    assert unit == 1
+                    assert {str(factor) for factor, _ in powers} == {str(x - number * y), str(x + number * y)}
+    assert len(anew) == 4 * (factors.MOST_ALIKE - 1)
+    monkeypatch.setattr(factors, "MOST_KNOWN", 3)
+    for k in range(1, 9):
+        irreducible_factors(x**k + y)
+    assert len(factors._KNOWN) <= 4

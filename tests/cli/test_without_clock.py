@@ -174,7 +174,7 @@ READS = {f"numerics.{name}": why for name, why in READS.items()} | {
     "serving.events": "how often a page is told that it is still listened to",
     "batch.coordinator": "how often further work is taken",
     "serving.storage": f"{STALE}; when something was saved",
-    **dict.fromkeys(["study", "reports", "batch.run"], SHOWN),
+    **dict.fromkeys(["study", "batch.run"], SHOWN),
     **dict.fromkeys(["console", "batch.table"], PROGRESS),
     "watch": "how often a file is looked at",
     "files": STALE,

@@ -15,7 +15,7 @@ from mbsym.numerics.accuracy import NoEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.methods import runge_kutta, sides
-from mbsym.numerics.methods.interface import Breakdown, Setting, compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Setting, compiled_kernel, up_to
 from mbsym.numerics.methods.landing import LandingRun
 from mbsym.numerics.methods.sides import Leaving
 from mbsym.numerics.methods.table import METHODS
@@ -49,6 +49,23 @@ def run_of(name: str, text: str, **setting: Any) -> LandingRun:
     found = method.start(Dynamics(scenario(mbsym.loads(text).system)), chosen)
     assert isinstance(found, LandingRun)
     return found
+
+
+@pytest.mark.parametrize("method", ["dop853", "auto"])
+def test_steps_between_switches_are_as_long_as_they_may_be(method: str) -> None:
+    """x'' = -x + s, s = 1 and -1 in turn for pi/5 each, comes to rest at x = 1 now and then, but for roundings.
+
+    By hand from switch to switch.  It took 10,561 steps: a step that overshot a switch was begun again with a tiny one,
+    and what rests on one side was measured by its roundings.
+    """
+    text = described("sign(sin(5*t))", start="position: 1")
+    found = mbsym.simulate(mbsym.loads(text), 20, samples=11, method=method, estimate=False)
+    x, v, side, begun, part = 1.0, 0.0, 1.0, 0.0, np.pi / 5
+    for end in (*np.arange(1, 32) * part, 20.0):
+        c, s, y = np.cos(end - begun), np.sin(end - begun), x - side
+        x, v, side, begun = side + y * c + v * s, v * c - y * s, -side, end
+    assert found.trajectory.states[:, -1] == pytest.approx([x, v], abs=1e-9)
+    assert found.trajectory.work.steps < 400
 
 
 def push(t: Any) -> Any:
@@ -225,7 +242,9 @@ def test_all_sides_of_switches_share_one_compiled_kernel(monkeypatch: pytest.Mon
     assert len(made) == 1
     # -3 sign(x - 100) is 3 here: x'' = 3 - x and the push.
     assert np.max(np.abs(states[0] - push(times) - 3 * (1 - np.cos(times)))) < 2e-8
-    assert len(run.passed.switches) == 2
+    passed = up_to(run.passed, 6.9)  # the last step may end at the switch behind
+    assert passed is not None
+    assert len(passed.switches) == 2
 
 
 @pytest.mark.parametrize("scalar", ["float64", "float32", "extended"])

@@ -15,7 +15,8 @@ from scipy.special import ellipj, ellipk
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.accuracy import ErrorEstimate
-from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods.interface import Breakdown, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning import pilot, planning
 from mbsym.numerics.planning import plan_items as plan_bounds
@@ -392,6 +393,62 @@ def test_a_short_push_is_not_stepped_over_and_no_coarser_setting_is_said_to_do()
     assert error <= plan.bound.total
     assert plan.more is not None
     assert plan.more.seconds is None or plan.more.seconds >= 0.9 * plan.seconds
+
+
+def test_a_coarse_look_that_breaks_down_ends_no_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between two stiff walls a run at 1e-6 missed a switch, one at 1e-10 does not; a motion that ends does in both."""
+    places, looks = pilot.places, []
+
+    def missed(method: Any, dynamics: Any, setting: Setting, end: float) -> Any:
+        looks.append(setting.tolerance)
+        if len(looks) == 1 or end > 5:
+            raise Breakdown("switching without end", "a switch was missed", 1.0, np.zeros(2))
+        return places(method, dynamics, setting, end)
+
+    monkeypatch.setattr(planning, "places", missed)
+    given = described(PENDULUM)
+    assert planned(given, Accuracy(1e-5), np.linspace(0, 5, 101)).reached
+    assert looks[1] < looks[0]
+    with pytest.raises(Breakdown, match="a switch was missed"):
+        planned(given, Accuracy(1e-5), np.linspace(0, 6, 101))
+
+
+def test_a_reference_whose_coarse_runs_break_down_is_a_finer_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor is a setting taken that breaks down."""
+    whole = pilot.trial_of
+
+    def broken(method: Any, dynamics: Any, setting: Setting, *more: Any) -> Any:
+        found = whole(method, dynamics, setting, *more)
+        coarse = (setting.tolerance or 0) > 1e-8
+        return replace(found, ended=Breakdown("switching without end", "", 1.0, np.zeros(2))) if coarse else found
+
+    monkeypatch.setattr(pilot, "trial_of", broken)
+    plan = planned(described(PENDULUM), Accuracy(1e-5), np.linspace(0, 5, 101))
+    assert plan.reached
+    assert plan.setting.tolerance is None or plan.setting.tolerance <= 1e-8
+
+
+def test_what_float64_has_no_room_for_is_measured_in_more_digits() -> None:
+    """A millimetre about a place a thousand kilometres away: x = 10^6 + cos(t/1000)/1000, by hand.
+
+    Float64 knows x to a ten-millionth of that: its finer runs drowned in steps; "no run could be had to measure by".
+    """
+    text = """mbsym: 1
+name: far away
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: -1e-6*(x - 1e6)}
+initial: {x: 1000000.001}
+"""
+    times = np.linspace(0, 30_000, 101)
+    given = scenario(mbsym.loads(text).system)
+    plan = planned(given, Accuracy(1e-8), times)
+    assert plan.reached
+    assert plan.scalar == "extended"
+    speed = METHODS[plan.method].start(Dynamics(given), plan.setting, plan.scalar).fill(times)[1]
+    error = np.max(np.abs(speed + 1e-6 * np.sin(times / 1000))) / 1e-6
+    assert error <= plan.bound.total <= 1e-8
 
 
 def test_the_python_interface_plans_and_runs() -> None:

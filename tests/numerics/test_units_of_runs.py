@@ -28,9 +28,11 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.magnitudes import Magnitudes, about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.lyapunov import exponents
+from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.simulate import _undefined
 from mbsym.simulation import Request, Simulation, simulate
+from mbsym.simulation.accurate import plan_for
 from mbsym.simulation.motions import find_orbit
 from mbsym.source import read
 from tests.numerics.test_adjoint import expression
@@ -136,6 +138,29 @@ def test_a_system_runs_alike_in_all_units(name: str, units: str) -> None:
     # Where forces jump every piece may take a step more.
     steps = 0.1 if Dynamics(given).features.switches.outputs else 0.02
     assert_alike(known, run(rescaled(given, OTHER[units]), 2 * OTHER[units][2]), steps)
+
+
+#: One of each kind: damped, with a spring, with constraints on positions and on velocities, in a field, of two scales.
+CHOOSING = ("bead-on-hoop", "spring-pendulum", "cartesian-pendulum", "chaplygin-sleigh", "clebsch", "henon-heiles")
+
+
+@pytest.mark.parametrize("units", ["mm-g-ms", "microns"])
+@pytest.mark.parametrize("name", CHOOSING)
+def test_choices_and_bits_are_the_same_in_all_units(name: str, units: str) -> None:
+    """What --accuracy takes, what bound it names, and how a certificate comes about."""
+    given = scenario(described(name))
+    kinds = [(given, F(1)), (rescaled(given, OTHER[units]), OTHER[units][2])]
+    plans = [plan_for(one, Request(float(2 * unit), samples=101), Accuracy(1e-6))[0] for one, unit in kinds]
+    chosen = [(plan.method, plan.scalar, plan.setting.step, plan.model, plan.reached) for plan in plans]
+    assert chosen[1] == chosen[0]
+    assert plans[1].setting.tolerance == pytest.approx(plans[0].setting.tolerance, rel=0.1)
+    assert plans[1].bound.total == pytest.approx(plans[0].bound.total, rel=0.2)
+    certificates = [
+        simulate(one, Request(float(unit) / 2, samples=11, certify=1e-10)).certificate for one, unit in kinds
+    ]
+    first, other = (certificate for certificate in certificates if certificate is not None)
+    assert (other.enclosure.bits, other.whole, other.narrow) == (first.enclosure.bits, True, True)
+    assert first.whole
 
 
 SPRING = described("spring-pendulum")

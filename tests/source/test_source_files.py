@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 import time
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -59,6 +61,29 @@ def test_both_spellings_lose_nothing(path: Path) -> None:
     assert to_text(good(to_yaml(system))) == to_text(system)
 
 
+@pytest.mark.parametrize(
+    "words", ["α 1", '"ω₀"; γ', "a (b", "null", "~", "Ω meaning β", "m² − 1", "value = 2", "[α", "#1", "a=b"]
+)
+def test_words_and_names_of_files_are_kept_letter_by_letter(words: str, tmp_path: Path) -> None:
+    """Greek letters are names in the editor's text, an open bracket hides what follows, null is no text in YAML."""
+    file = words.replace('"', "'") + ".csv"
+    (tmp_path / file).write_text("0, 1\n1, 2\n", encoding="utf-8")
+    described = {
+        "mbsym": 1, "name": words, "description": words, "source": words,
+        "parameters": {"m": {"sign": "positive", "meaning": words, "value": 2}},
+        "inputs": {"F": {"meaning": words}},
+        "tables": {"f": {"file": file}},
+        "bodies": [{"name": "null", "mass": "m", "connection point": ["x", 0, 0], "coordinates": ["x"]}],
+        "loads": [{"generalized force": {"x": "F + f(t)"}}],
+        "claims": [{"claim": "momentum", "of": "x", "equals": "m*x_dot", "place": words}],
+    }  # fmt: skip
+    system, complaints = read(json.dumps(described), "x.yaml", tmp_path)
+    assert system is not None, list(complaints)
+    assert (system.name, system.claims[0].place, system.parameters[0].meaning) == (words, words, words)
+    assert read(to_yaml(system), "x.yaml", tmp_path)[0] == system
+    assert read(to_text(system), "x.txt", tmp_path)[0] == system
+
+
 class AsEditorsRead(yaml.SafeLoader):
     """YAML 1.2, as editors with schemas have it: only true and false are words for truth, ``on`` is a text."""
 
@@ -74,6 +99,32 @@ AsEditorsRead.yaml_implicit_resolvers = {
 def test_the_schema_accepts_good_files(path: Path, rewritten: bool) -> None:
     text = to_yaml(loaded(path)) if rewritten else path.read_text(encoding="utf-8")
     jsonschema.Draft202012Validator(json_schema()).validate(yaml.load(text, AsEditorsRead))
+
+
+@pytest.mark.parametrize("blank", ["", "  "])
+@pytest.mark.parametrize(
+    "place",
+    ["name", "description", "source", "label", "parameters m unit", "parameters m meaning", "latex m", "values m",
+     "bodies 0 name", "bodies 0 mass", "bodies 0 attached to", "tables f file", "claims 0 of", "claims 0 place"],
+)  # fmt: skip
+def test_the_schema_refuses_a_blank_text_as_the_reader_does(place: str, blank: str) -> None:
+    described: dict[str, Any] = {
+        "mbsym": 1, "name": "p", "parameters": {"m": {"sign": "positive"}}, "motion": {"x": 0}, "values": {"m": 1},
+        "bodies": [{"name": "b", "mass": "m", "connection point": ["x", 0, 0], "coordinates": ["x"]}],
+        "claims": [{"claim": "momentum", "of": "x", "equals": "m*x_dot"}], "latex": {},
+        "tables": {"f": {"columns": [1, 2]}} if place.startswith("tables") else {},
+    }  # fmt: skip
+    first, *keys = place.split(" ", 2)
+    path, holder = [first, *keys], described
+    for key in path[:-1]:
+        holder = holder[int(key) if key.isdecimal() else key]
+    holder[path[-1]] = blank
+    system, complaints = read(json.dumps(described), "x.yaml")
+    assert system is None
+    assert "missing-value" in {one.code for one in complaints}
+    schema = jsonschema.Draft202012Validator(json_schema())
+    guilty = [[str(part) for part in one.absolute_path] for one in schema.iter_errors(described)]
+    assert any(whole and path[: len(whole)] == whole for whole in guilty), guilty
 
 
 def test_the_schema_is_a_schema_and_refuses_unknown_keys() -> None:

@@ -231,6 +231,11 @@ PLANES = [
     plane("the same by one force", forces("-4*(x**2 + y**2)*x - x_dot", "-4*(x**2 + y**2)*y"), "stable",
           lambda t, q, v: -4 * np.sum(q * q) * q - np.array([v[0], 0])),
     plane("trough with a quartic crest", potential("x**2/2 - y**4/4"), "unstable, critical", decided=False),
+    # equations that do not know each other: what one of them does the whole does, whatever the other
+    plane("cubic slope beside a damped spring", potential("x**2/2 + y**3/3") + rayleigh("x_dot**2/2"),
+          "unstable, critical", lambda t, q, v: -np.array([q[0] + v[0], q[1]**2])),
+    plane("pushed border beside a quartic well", potential("x**2/2 + y**4/4") + forces("x**2*x_dot", "0"),
+          "unstable, critical", lambda t, q, v: -np.array([q[0] - q[0]**2 * v[0], q[1]**3])),
     # a monkey saddle: no minimum
     plane("monkey saddle", potential("x**3/3 - x*y**2"), "unstable, critical", decided=False),
 ]  # fmt: skip

@@ -161,6 +161,15 @@ class SwitchingRun(Stepping):
         self._turned(self._stiff, time, state)
         self.time, self.state = float(time), np.array(self.end)
 
+    @property
+    def sizes(self) -> Any:
+        """By which errors of steps are measured."""
+        return self._active.sizes
+
+    def lengthen(self, length: float) -> None:
+        """The next step is tried with this length, where that of a beginning is shorter."""
+        self._active.lengthen(length)
+
     def one(self, until: float | None = None) -> None:
         """One step, by whichever method is the better one here."""
         self._considered()

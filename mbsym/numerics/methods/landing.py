@@ -253,6 +253,7 @@ class LandingRun:
         self._switches.measure(time, state)
         self._sides: tuple[int, ...] | None = None
         self._ahead: Run | None = None
+        self._latest: Run | None = None  # the run of the last step
         self._windows: list[_Window] = []
         self._together = 0
         self._length = 0.0  # of the last step
@@ -339,7 +340,7 @@ class LandingRun:
             if not turned:
                 return self._taken(piece)
             if place > piece.start + self._switches.together(place):
-                return self._landed(place, turned)
+                return self._landed(place, turned, float(piece.end - piece.start))
             self._note_switch()
             self._switch(turned)
         raise endless("its switches lead back to each other", self.time, self.state)
@@ -384,16 +385,21 @@ class LandingRun:
                 bound = min(bound, max(self.time + window.longest, np.nextafter(self.time, inf)))
         return bound
 
-    def _inner_step(self, bound: float) -> Piece:
-        """A step of the run on these sides, from the state where this run is."""
+    def _inner_step(self, bound: float, length: float = 0.0) -> Piece:
+        """A step of the run on these sides, from the state where this run is; one of this length was good there."""
         assert self._sides is not None
         run = self._run(self._sides)
         if run is not self._ahead or run.time != self.time:
+            known = np.array(getattr(self._latest, "sizes", 0.0))  # what rests on one side has moved on others
             run.restart(self.time, self.state)
             sizes = getattr(run, "sizes", None)
             if sizes is not None and run is not self._runs.get(None):  # what stays at a switch is measured as it moves
-                sizes[:] = np.maximum(sizes, about(self._dynamics, float(self.time), self.state).sizes[:, 0])
-            self._ahead = run
+                known = np.maximum(known, about(self._dynamics, float(self.time), self.state).sizes[:, 0])
+            if sizes is not None:
+                sizes[:] = np.maximum(sizes, known)
+            if hasattr(run, "lengthen"):
+                run.lengthen(length)
+            self._ahead = self._latest = run
         if self.work.steps >= self._setting.step_limit:
             raise self.work.too_many(self.time, self.state)
         before, changes = replace(run.work), len(run.work.changes)
@@ -432,10 +438,10 @@ class LandingRun:
             self._switch(knots)
         return piece
 
-    def _landed(self, place: float, turned: tuple[int, ...]) -> Piece:
-        """The step once more, to where the switch is; the next one begins on the other side."""
+    def _landed(self, place: float, turned: tuple[int, ...], length: float) -> Piece:
+        """The step of that length once more, to where the switch is; the next one begins on the other side."""
         self._go_back(self.time, self.state)
-        piece = self._inner_step(place)
+        piece = self._inner_step(place, length)
         if piece.end < place:  # the step before it was longer than those from a restart: go on from its end
             self._note_narrow(piece)
             self.time, self.state = piece.end, self._ahead.state if self._ahead is not None else self.state

@@ -523,6 +523,11 @@ class AdaptiveRun(CompiledRun):
         self.k[self.tableau.begin] = slopes[:, 0]
         self.clock[Clock.STEP] = min(float(steps[0]), float(self.clock[Clock.LONGEST]))
 
+    def lengthen(self, length: float) -> None:
+        """The next step is tried with this length, where that of a beginning is shorter."""
+        clock = self.clock
+        clock[Clock.STEP] = min(max(float(clock[Clock.STEP]), length), float(clock[Clock.LONGEST]))
+
     def one(self, until: float | None = None) -> None:
         """One step that is accepted; where ``until`` shortens it, the next one is as long as it would have been."""
         clock = self.clock

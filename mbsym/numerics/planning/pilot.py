@@ -143,7 +143,10 @@ def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: fl
     setting, preferred, last = start, None, None
     slope = usual_slope(method, start)
     for _ in range(TRIES):
-        trial = _tried(bench, method, scalar, setting)
+        trial, broken = _tried(bench, method, scalar, setting)
+        if broken and last is None and setting.tolerance is not None:  # what ends a coarse run need not end a finer one
+            setting = replace(setting, tolerance=max(setting.tolerance * APART, method.traits.finest(scalar)))
+            continue
         if trial is None:
             return preferred
         if trial.error <= goal and (preferred is None or _preferred(trial, preferred)):
@@ -173,14 +176,17 @@ def _preferred(trial: Trial, other: Trial) -> bool:
     return trial.fineness > other.fineness
 
 
-def _tried(bench: Bench, method: Method, scalar: str, setting: Setting) -> Trial | None:
+def _tried(bench: Bench, method: Method, scalar: str, setting: Setting) -> tuple[Trial | None, bool]:
+    """The trial, None where there is none; whether it broke down, in no too many steps."""
     try:
-        return bench.run(method, scalar, setting, often=True)
-    except (Breakdown, Unusable, Failure):
-        return None
+        return bench.run(method, scalar, setting, often=True), False
+    except Breakdown as ended:
+        return None, ended.kind != Cause.STEP_LIMIT
+    except (Unusable, Failure):
+        return None, False
     except Exception as error:  # told of; what else there is to try is tried
         Defect.of(error)
-        return None
+        return None, False
 
 
 def _slope(last: Trial | None, now: Trial, slope: float) -> float:
@@ -267,7 +273,7 @@ class Yardstick:
 def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most: int = 10_000_000) -> Yardstick:
     """A reference for settings that are to reach rho <= ``goal``; the finest that there is where none is good enough.
 
-    Raises Breakdown where the first run does not come to the end in ``most`` steps.
+    Raises Breakdown where no run comes to the end in ``most`` steps.
     """
     longest = float(bench.times[-1]) / PARTS
     if bench.longest is not None:  # a longer one would be cut to it in every run, and two of them be one run
@@ -275,7 +281,15 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
     scalar, last, gain, rounding = FLOAT64, inf, USUAL_GAIN, 0.0
     # An error is known by a finer run: the first one leaves room for that.
     tolerance = max(tolerance, method.traits.finest(scalar) / APART**2)
-    before = bench.run(method, scalar, Setting(tolerance, None, most, longest))
+    finest = method.traits.finest(scalar)
+    while True:
+        try:
+            before = bench.run(method, scalar, Setting(tolerance, None, most, longest))
+            break
+        except Breakdown as ended:  # what ends a coarse run, as a switch that it passes, need not end the motion
+            if ended.kind == Cause.STEP_LIMIT or tolerance * APART < finest / APART:
+                raise
+            tolerance *= APART
     best = Yardstick(before, inf, _rounded(tolerance))
     while True:
         least = method.traits.finest(scalar)
@@ -294,7 +308,10 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
         except Breakdown as ended:  # its steps fall below what rounding lets them be
             if ended.kind != Cause.STEP_LIMIT:
                 raise
-            return best
+            if best.known < inf or limit == most or scalar == EXTENDED or not _extended(bench, method):
+                return best
+            scalar, tolerance = EXTENDED, coarser  # in which there is room for them
+            continue
         apart, _ = bench.compared(before.states, now.states)
         if before.scalar != scalar:  # the initial state was rounded alike in all runs before: it shows here first
             rounding = max(rounding, apart * MORE_DIGITS)

@@ -290,10 +290,17 @@ def outlined(scenario: Scenario, accuracy: Accuracy, times: Any) -> tuple[Scene,
     end = float(times[-1])
     choice = choose(rich, COARSE, end)
     compared = times[:: -(-len(times) // MOST)] if len(times) > MOST else times
-    grid = np.union1d(np.append(compared, end), places(choice.method, rich, Setting(COARSE), end))
     names = (*rich.system.coordinates, *rich.system.velocities, ENERGY)
     targets = accuracy.targets(names)
-    run = trial_of(choice.method, rich, Setting(COARSE), grid).whole()
+    for tolerance in (COARSE, COARSE**2):  # what ends a coarse run, as a switch that it passes, need not end the motion
+        try:
+            step_times = places(choice.method, rich, Setting(tolerance), end)
+            grid = np.union1d(np.append(compared, end), step_times)
+            run = trial_of(choice.method, rich, Setting(tolerance), grid).whole()
+            break
+        except Breakdown:
+            if tolerance < COARSE:
+                raise
     states = run.states
     stiff = [change.time for change in run.work.changes if METHODS[change.method].traits.implicit]
     if stiff:

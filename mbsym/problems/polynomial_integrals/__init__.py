@@ -1,7 +1,8 @@
 """Problem 9: polynomial first integrals of equations of motion.
 
-Variables are speeds and direction cosines, rates, sines and cosines, positions, exponentials (Toda's lattice) and
-square roots of these (Kepler's problem), and sines and cosines of driven phases.
+Variables are speeds and direction cosines, rates, sines and cosines, positions, exponentials (Toda's lattice),
+reciprocals (Calogero's particles) and square roots of these (Kepler's problem), and sines and cosines of driven phases.
+Square roots of numbers are constants of the field.
 
 Of  x' = P(x)/d  the polynomials f with  sum_i P_i df/dx_i = 0  (modulo the relations that all states keep) are the
 kernel of a linear map on the monomials of one weighted degree.  The search goes through the weights w from below:

@@ -172,6 +172,7 @@ class Orders:
                     order=order,
                     name=system.names[i],
                 ) from None
+            self._integrated(i, slope, order)
         for block in system.blocks:
             forcing = [self.forcing(i, order) for i in block]
             own = {APART**place: led for place, led in enumerate(self.phases) if block == led.mode.block}
@@ -231,8 +232,9 @@ class Orders:
         speed = speed_of(k, self.frequencies)
         square = -(speed * speed)
         parts = [without_zeros(polynomial)[0]]
-        if k:  # chi(i k omega) = parts[0] + i k omega parts[1]
-            parts = [_at(tower, polynomial[first::2], square) for first in range(2)]
+        if k:  # chi(i k omega) = parts[0] + i k omega parts[1], of one phase k omega != 0
+            even, odd = (_at(tower, polynomial[first::2], square) for first in range(2))
+            parts = [even, odd * speed if sum(map(bool, turns)) > 1 else odd]
         parts = [x for x in parts if not x.is_zero()]
         if any(divisor.variables == names and divisor.harmonic == k for divisor in self.divisors):
             return
@@ -242,6 +244,18 @@ class Orders:
         if own and _cancelled(whole, answer):
             return
         self.divisors.append(Divisor(names, k, order, *parts))
+
+    def _integrated(self, i: int, slope: Harmonics, order: int) -> None:
+        """Notes the sums of multiples of several frequencies by which an integral over the time divides."""
+        for k in slope.waves:
+            if sum(map(bool, multiples(k, len(self.phases)))) > 1:
+                self._note(Divisor((self.system.names[i],), k, order, speed_of(k, self.frequencies)))
+
+    def _note(self, divisor: Divisor) -> None:
+        """Once of each harmonic and variables; of numbers there is nothing to say."""
+        known = {(other.variables, other.harmonic) for other in self.divisors}
+        if (divisor.variables, divisor.harmonic) not in known and self.tower.rational(divisor.value) is None:
+            self.divisors.append(divisor)
 
     def _is_multiple(self, x: Element, most: int) -> bool:
         """Whether it is a number, or one times a power of an omega^2."""
@@ -317,6 +331,8 @@ class Orders:
                 drifting.add(i)
                 continue
             slopes = [self.right_side(i, n) for n in range(order + 1)]
+            for n, slope in enumerate(slopes):
+                self._integrated(i, slope, n)
             drift = integrated(
                 self.system.names[i], slopes, self.frequencies, [tuple(led.shifts[:order]) for led in self.phases]
             )

@@ -184,6 +184,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "Judged in other angles of body [[1]], about axes [[2]] by [[3]], in which the same motion is steady: "
         "coordinates are these angles here."
     ),
+    Because.APART: "This is about [[1]]: equations of motion that know no other coordinates are judged by themselves.",
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",

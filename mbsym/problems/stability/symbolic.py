@@ -110,6 +110,9 @@ from mbsym.problems.stability.words import Because, Fact, Ground, Reason, Word, 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
 
+#: Conditions with more terms are not asked whether they imply others.
+MOST_COMPARED = 60
+
 
 @dataclass(frozen=True)
 class Theory:
@@ -212,7 +215,8 @@ def _without_further_zeros(theory: Theory, signs: Signs, case: Case | None) -> b
         return True
     if case is None:
         return False
-    if all(r in case.all_of for r in theory.requirements if not r.always):
+    held = [r.polynomial for r in case.all_of]  # those that the others imply, too
+    if all(r.polynomial in held for r in theory.requirements if not r.always):
         return True
     try:
         known = signs.assuming((r.polynomial, r.relation) for r in case.all_of if not r.always)
@@ -309,6 +313,7 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
         # What changes the relations of a leaf acts like a constant force: along zero roots velocities grow under it.
         if not (system.leaf and any(case.verdict.word.stable for case in linear)):
             cases = linear or cases
+    cases = tuple(_without_implications(case, known) for case in cases)
     verdict, left = _first_certain(cases, known)
     return replace(theory, cases=cases, reduced=reduced, verdict=verdict, uncovered=left)
 
@@ -596,6 +601,36 @@ def _without_implied(wanted_requirements: list[Requirement], known: Signs) -> li
             r = replace(r, condition=replace(r.condition, nonzero=left))
         requirements.append(r)
     return requirements
+
+
+def _without_implications(case: Case, known: Signs) -> Case:
+    """Without p > 0 that another one of ``all_of`` implies, and without alternatives that imply another one."""
+    every, some = list(case.all_of), list(case.any_of)
+    for k, r in enumerate(every):
+        if any(_implies(other, r, known) for other in (*every[:k], *every[k + 1 :])):
+            every[k] = replace(r, condition=Condition("always", r.condition.polynomial))
+    for k, r in enumerate(some):
+        if any(_implies(r, other, known) for other in (*some[:k], *some[k + 1 :])):
+            some[k] = replace(r, condition=Condition("never", r.condition.polynomial))
+    return replace(case, all_of=tuple(every), any_of=tuple(some))
+
+
+def _implies(one: Requirement, other: Requirement, known: Signs) -> bool:
+    """Whether p > 0 implies r > 0 as p = q r + s with q > 0, s <= 0: q is the ratio of their slopes in a variable."""
+    p, r = one.condition, other.condition
+    if any(x.condition.kind != "inequality" or x.relation != ">" for x in (one, other)) or r.nonzero:
+        return False
+    if max(len(p.polynomial), len(r.polynomial)) > MOST_COMPARED:
+        return False
+    for variable in occurring([r.polynomial]):
+        slope = r.polynomial.derivative(variable)
+        if not slope.is_constant():
+            continue
+        quotient = p.polynomial.derivative(variable) / slope.coeffs()[0]
+        rest = p.polynomial - quotient * r.polynomial
+        if known.sign(quotient) == "positive" and known.sign(rest) in ("negative", "nonpositive", "zero"):
+            return True
+    return False
 
 
 def _power_name(even: bool, i: int) -> str:

@@ -172,6 +172,7 @@ class Because(Enum):
     ELSEWHERE = auto()
     DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
     OTHER_ANGLES = auto()  # (body, axes, angles)
+    APART = auto()  # (coordinates)
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open

@@ -7,7 +7,7 @@ from math import atan2, cos, exp, sin, sqrt
 
 import pytest
 from conftest import SHIPPED
-from test_oscillations import point
+from test_oscillations import EPS, POINT, point
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -130,6 +130,25 @@ def test_frequencies_in_resonance_whose_terms_are_not_there_are_none(tmp_path):
     (_, first), (_, second) = rates(told, w=1.5, amplitude_x=0.5, amplitude_y=0.25)
     # x'' + w^2 x = -2 eps x y^2: mean of y^2 is b^2/2; the like of y
     assert (first, second) == pytest.approx((0.25**2 / (2 * 1.5**2), 0.5**2 / (2 * 9)))
+
+
+def test_what_is_integrated_over_the_time_is_divided_by_sums_of_frequencies():
+    """z'' = -eps x y with x = a cos T, y = b cos U: z = eps a b/2 (cos(T + U)/(w + v)^2 + cos(T - U)/(w - v)^2)."""
+    potential = "w**2*x**2/2 + k**2*y**2/2 + eps*x*y*z"
+    text = POINT.format(small=EPS, place="x, y, z", names="x, y, z", loads=f"  - potential: {potential}")
+    analysis = mbsym.loads(text.replace("k: {sign: real}", "k: {sign: positive}"))
+    told = oscillating(analysis, 1, {"z_dot_0": 0}, leading=("x", "y"))
+    ring = told.ring
+    w, k = (ring.generator("parameter", name) for name in "wk")
+    shown = {x.harmonic: told.formula(x.value).polynomial for x in told.oscillation.divisors if "z" in x.variables[0]}
+    assert {APART + 1, APART - 1} <= shown.keys()
+    assert shown[APART + 1] in (w + k, -w - k)
+    assert shown[APART - 1] in (w - k, k - w)
+    z = told.oscillation.series[told.oscillation.names.index("z")][1]
+    for turn, both in ((APART + 1, w + k), (APART - 1, w - k)):
+        cosine = told.formula(z.wave(turn)[0]).polynomial
+        a, b = (ring.generator("parameter", f"amplitude_{name}") for name in "xy")
+        assert ring.is_zero(ring.times(cosine, 2 * both**2) - a * b)
 
 
 def test_amplitudes_that_damping_determines_are_not_looked_for(tmp_path):
