@@ -190,6 +190,9 @@ ROUNDING = 1e-9
 #: A semi-axis that is zero is drawn so thick, as a part of the largest: rods and discs have one.
 THICKNESS = 0.01
 
+#: Jacobi's rotations of a tensor of three rows converge quadratically: fewer are enough.
+SWEEPS = 12
+
 
 def shapes(body: Body, values: Mapping[str, Fraction]) -> tuple[Outline, ...]:
     """The shapes of a body whose numbers are known."""
@@ -244,12 +247,31 @@ def turned(rotation: Rotation, values: Mapping[str, Fraction]) -> Rows:
 
 
 def principal(tensor: Sequence[Sequence[float]]) -> tuple[Numbers, Rows]:
-    """(moments, the least first; principal axes in rows, right-handed) of a symmetric tensor."""
-    import numpy as np
+    """(moments, the least first; principal axes in rows, right-handed) of a symmetric tensor, by Jacobi's rotations."""
+    a, rows = [list(row) for row in tensor], [list(row) for row in AXES]
+    for _ in range(SWEEPS):
+        for p, q in ((0, 1), (0, 2), (1, 2)):
+            if a[p][q] == 0:
+                continue
+            turn = atan2(2 * a[p][q], a[p][p] - a[q][q]) / 2
+            c, s = cos(turn), sin(turn)
+            a = _rotated(a, p, q, c, s)
+            a = [
+                list(row)
+                for row in zip(*_rotated([list(row) for row in zip(*a, strict=True)], p, q, c, s), strict=True)
+            ]
+            a[p][q] = a[q][p] = 0.0
+            rows = _rotated(rows, p, q, c, s)
+    order = sorted(range(3), key=lambda k: a[k][k])
+    first, second = _numbers(rows[order[0]]), _numbers(rows[order[1]])
+    return _numbers([a[k][k] for k in order]), (first, second, cross(first, second))
 
-    moments, axes = np.linalg.eigh(np.array(tensor))
-    first, second = map(_numbers, axes.T[:2].tolist())
-    return _numbers(moments.tolist()), (first, second, cross(first, second))
+
+def _rotated(rows: list[list[float]], p: int, q: int, c: float, s: float) -> list[list[float]]:
+    rotated = list(rows)
+    rotated[p] = [c * x + s * y for x, y in zip(rows[p], rows[q], strict=True)]
+    rotated[q] = [c * y - s * x for x, y in zip(rows[p], rows[q], strict=True)]
+    return rotated
 
 
 def _numbers(values: Sequence[float]) -> Numbers:
