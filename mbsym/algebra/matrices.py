@@ -154,12 +154,16 @@ def components(size: int, coupled: Callable[[int, int], bool]) -> list[list[int]
 
 
 def united(groups: Iterable[Collection[T]]) -> list[set[T]]:
-    """The unions of groups that share a member, directly or through others."""
-    sets: list[set[T]] = []
+    """The unions of groups that share a member, directly or through others, by their members met first."""
+    union_of: dict[T, set[T]] = {}
     for group in groups:
-        touching = [other for other in sets if not other.isdisjoint(group)]
-        sets = [other for other in sets if other.isdisjoint(group)] + [set(group).union(*touching)]
-    return sets
+        touched = {id(union): union for x in group if (union := union_of.get(x)) is not None}
+        largest = max(touched.values(), key=len, default=set[T]())
+        for part in (group, *touched.values()):
+            if part is not largest:  # the largest is not copied: n members cost n log n
+                largest.update(part)
+                union_of.update(dict.fromkeys(part, largest))
+    return list({id(union): union for union in union_of.values()}.values())
 
 
 # --- determinants ---

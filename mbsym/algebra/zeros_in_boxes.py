@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from math import lcm
 from typing import Any
 
 from flint import Ordering, arb, ctx, fmpq, fmpq_mat, fmpq_mpoly_ctx
@@ -131,9 +132,7 @@ class Several:
         return ZeroSet(self.plain, self.names, EXACT, (), tuple(distinct), isolated) if distinct else None
 
     def _flat(self, where: Any, chart: Mapping[str, int]) -> Polynomial:
-        bottom = 1
-        for coefficient in self.factor.coeffs():
-            bottom = bottom * int(coefficient.q) // _gcd(bottom, int(coefficient.q))
+        bottom = lcm(*(int(coefficient.q) for coefficient in self.factor.coeffs()))
         terms: dict[tuple[int, ...], int] = {}
         for monomial, coefficient in self.factor.terms():
             powers = tuple(int(monomial[self.half.place[name] + chart.get(name, 0)]) for name in self.names)
@@ -152,12 +151,6 @@ class Several:
                     ball = 2 * self.half.angles[name] * half
                 coordinates[name] = ball
         return coordinates
-
-
-def _gcd(a: int, b: int) -> int:
-    while b:
-        a, b = b, a % b
-    return a
 
 
 def _distinct(points: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

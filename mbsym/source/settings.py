@@ -44,13 +44,9 @@ def read_relations(node: Node | None, reading: Reading) -> tuple[Relation, ...]:
 
 
 def _check_circles(relations: list[Relation], reading: Reading) -> None:
-    """Peel off relations that depend on no other one; those that remain depend on themselves."""
     needs = {relation.name: names(relation.value) for relation in relations}
-    while free := [name for name, needed in needs.items() if not needed & needs.keys()]:
-        for name in free:
-            del needs[name]
     for relation in relations:
-        if relation.name in needs and _reaches(relation.name, needs):
+        if _reaches(relation.name, needs):
             message = Message("'[[name]]' depends on itself through the relations", name=relation.name)
             reading.error("relation-cycle", message, relation.span)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache, cached_property
@@ -14,6 +14,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from mbsym.algebra.arrangements.stacks import Column, Fibre
 from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.matrices import united
 from mbsym.algebra.plane.fields import Point
 from mbsym.algebra.plane.numbers import Ball, Rational, Root, compare, high, low, primitive, roots_between, sign
 from mbsym.algebra.plane.projection import Box, Curve, Polynomial, coefficients
@@ -483,25 +484,13 @@ def _sides(arrangement: Arrangement, arc: Arc, odd: list[list[object]]) -> bool:
 def euler(arrangement: Arrangement) -> bool:
     """Whether V - E + F = 1 + C."""
     box = arrangement.box
-    parent: dict[object, object] = {}
-
-    def root(key: object) -> object:
-        while parent.setdefault(key, key) != key:
-            key = parent[key]
-        return key
-
     at_ends = [x for corner in arrangement.corners if (x := corner.point).rational and x.x in (box.x0, box.x1)]
     on_rim = {corner.id for corner in arrangement.corners if is_on_rim(box, corner.point)}
     plain_ends = 4 - sum(point.y in (box.y0, box.y1) for point in at_ends)
-    for corner in on_rim:
-        parent[root(corner)] = root("rim")
-    closed = 0
-    for arc in arrangement.arcs:
-        if arc.corners == (None, None):
-            closed += 1
-        else:
-            parent[root(arc.corners[0])] = root(arc.corners[1])
-    components = len({root(key) for key in ["rim", *(corner.id for corner in arrangement.corners)]}) + closed
+    closed = sum(arc.corners == (None, None) for arc in arrangement.arcs)
+    ends = (arc.corners for arc in arrangement.arcs if arc.corners != (None, None))
+    joints: list[Collection[object]] = [{"rim", *on_rim}, *([corner.id] for corner in arrangement.corners), *ends]
+    components = len(united(joints)) + closed
     vertices = len(arrangement.corners) + plain_ends + closed
     edges = len(arrangement.arcs) + len(on_rim) + plain_ends - sum(None in arc.regions for arc in arrangement.arcs)
     return vertices - edges + len(arrangement.regions) + 1 == 1 + components

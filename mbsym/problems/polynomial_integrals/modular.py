@@ -16,7 +16,7 @@ from typing import Any
 from flint import fmpz, nmod_mat
 
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.algebra.matrices import Operators, PrimitiveRows
+from mbsym.algebra.matrices import Operators, PrimitiveRows, united
 from mbsym.algebra.polynomial_field import PolynomialField, Term
 from mbsym.algebra.terms import apart
 from mbsym.expressions.message import Message
@@ -265,23 +265,11 @@ def possible(images: Sequence[Terms]) -> list[int]:
 
 def coupled(images: Sequence[Terms]) -> list[list[int]]:
     """Indices of columns that share rows, directly or through others: the matrix falls into such parts."""
-    parent = list(range(len(images)))
-
-    def root(k: int) -> int:
-        while parent[k] != k:
-            parent[k] = parent[parent[k]]
-            k = parent[k]
-        return k
-
-    first: dict[Exponents, int] = {}
+    sharing: defaultdict[Exponents, list[int]] = defaultdict(list)
     for k, image in enumerate(images):
         for row in image:
-            other = first.setdefault(row, k)
-            parent[root(k)] = root(other)
-    parts: defaultdict[int, list[int]] = defaultdict(list)
-    for k in range(len(images)):
-        parts[root(k)].append(k)
-    return list(parts.values())
+            sharing[row].append(k)
+    return sorted(map(sorted, united([*([k] for k in range(len(images))), *sharing.values()])))
 
 
 def matrix_of(images: Sequence[Terms], prime: int) -> Any:
