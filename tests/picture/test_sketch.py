@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-import mbsym
+import mbsym.source
 from mbsym.formulas.latex import latex_names
 from mbsym.formulas.mathml import mathml_names
 from mbsym.picture import lettering, picture
