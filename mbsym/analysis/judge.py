@@ -37,7 +37,7 @@ from mbsym.expressions.message import Message
 from mbsym.model.substitution import beside_rest, displaced
 from mbsym.model.system import System
 from mbsym.problems.equations import separate
-from mbsym.problems.stability.problem import ExactVerdicts
+from mbsym.problems.stability.problem import ExactVerdicts, stability
 from mbsym.problems.stability.verdict import Flaw, Verdict, undecided, weakest
 from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
@@ -71,9 +71,17 @@ class Judge:
         return self.decided(self.first_approximation(values), values)
 
     def first_approximation(self, values: Mapping[str, Any]) -> Verdict:
-        """The verdict of step 1; irrational values are enclosures."""
+        """The verdict of step 1; irrational values are enclosures, of the description's own values."""
         divisor = pole(self.analysis, values)
-        return self._exact(values) if divisor is None else undecided(Because.POLE, divisor)
+        if divisor is not None:
+            return undecided(Because.POLE, divisor)
+        return self._exact(values) if all(isinstance(x, Fraction) for x in values.values()) else self._enclosed
+
+    @cached_property
+    def _enclosed(self) -> Verdict:
+        of = self.analysis
+        described = stability(of.parameters_scene, of.balance, of.judgeable, of.equilibrium, of.signs).numerical
+        return described or undecided(Because.NOT_ENCLOSED)
 
     @cached_property
     def _exact(self) -> ExactVerdicts:
@@ -123,6 +131,8 @@ class Judge:
         except (Failure, *NOT_THERE):
             return whole
         apart = weakest([part for _, part in judged])
+        if apart.flawed >= {Flaw.CYCLIC, Flaw.STEADY}:  # what comes to another rest is not what is cyclic
+            apart = Verdict(Word.STABLE_BUT_CYCLIC, apart.theorems)
         if apart.word.open:
             return whole
         alike = [(names, part) for names, part in judged if part.word is apart.word] or judged

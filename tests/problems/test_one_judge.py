@@ -187,3 +187,49 @@ values: {{d: 1, k: 2}}
 """).stability
     assert found.verdict.word is Word.ASYMPTOTIC
     assert found.numerical is None or found.numerical.word is Word.ASYMPTOTIC
+
+
+BESIDE = """mbsym: 1
+name: a spring of an irrational stiffness beside another coordinate
+parameters: {{k: {{sign: positive, value: {k}}}}}
+bodies:
+  - {{name: p, connection point: [{place}, y, 0], mass: 1, coordinates: [x, y]}}
+loads:
+  - potential: {potential}
+  - rayleigh: x_dot**2/2
+motion: {{x: 0, y: 0}}
+"""
+
+
+@pytest.mark.parametrize("k", ["sqrt(2)", "exp(1)"])
+@pytest.mark.parametrize(("potential", "word"), [("y**3/3", Word.UNSTABLE), ("y**4/4", Word.STABLE)])
+def test_parts_are_judged_at_irrational_values_too(k: str, potential: str, word: Word) -> None:
+    """y'' = -y^2 leaves, y'' = -y^3 stays, whatever the damped spring of stiffness k beside it does."""
+    text = BESIDE.format(k=k, place="x", potential=f"k*x**2/2 + {potential}")
+    assert mbsym.loads(text).stability.numerical.word is word
+
+
+@pytest.mark.parametrize("k", ["sqrt(2)", "exp(1)"])
+def test_other_coordinates_are_judged_at_irrational_values_too(k: str) -> None:
+    """x + y is a displacement that changes nothing but V = (x - y)^4: nothing breaks down where k is not rational."""
+    text = BESIDE.format(k=k, place="x", potential="k*(x - y)**4").replace("x_dot**2", "(x_dot - y_dot)**2")
+    verdict = mbsym.loads(text).stability.numerical
+    assert verdict.word.open or verdict.word is Word.STABLE_BUT_CYCLIC
+
+
+def test_irrational_places_of_parts_break_no_list_down() -> None:
+    """x = log 2 beside y = 0: friction (x - 1) x'^3 against the motion (x < 1 makes it push) is of third order."""
+    text = BESIDE.format(k="1", place="x", potential="y**2/2 + exp(x) - 2*x")
+    text = text.replace("rayleigh: x_dot**2/2", "generalized force: {x: '(x - 1)*x_dot**3', y: 0}")
+    (rest,) = mbsym.loads(text.replace("{x: 0, y: 0}", "{}")).equilibria.equilibria
+    assert rest.verdict.word not in (Word.UNSTABLE, Word.ASYMPTOTIC)  # y swings on
+
+
+def test_what_comes_to_another_rest_is_not_what_drifts() -> None:
+    """x'' = 0 beside a trough of rests along z, which is not cyclic: a displaced z stays displaced at any momentum."""
+    text = (
+        "mbsym: 1\nname: beside a trough\nbodies:\n"
+        "  - {name: p, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}\n"
+        "loads:\n  - potential: y**2/2 + y**2*z\n  - rayleigh: (y_dot**2 + z_dot**2)/2\nmotion: {x: 0, y: 0, z: 0}\n"
+    )
+    assert mbsym.loads(text).stability.numerical.word is Word.STABLE_BUT_CYCLIC
