@@ -84,7 +84,7 @@ FEWEST = 5
 
 
 class Helped(click.Context):
-    """``--help`` tells as much of a command as a screen holds; all of it stands in ``mbsym explain``."""
+    """``--help`` tells as much of a command as a screen holds; ``--help-all`` and ``mbsym explain`` tell all of it."""
 
     def get_help(self) -> str:
         text = super().get_help()
@@ -94,14 +94,14 @@ class Helped(click.Context):
             (k for k, paragraph in enumerate(paragraphs) if "Example" in paragraph.partition(":")[0]), len(paragraphs)
         )
         prose, examples = paragraphs[:at], "\n\n".join(paragraphs[at:]).splitlines()
-        more = f"All that there is to say: mbsym explain {self.info_name}"
+        more = f"All that there is to say: mbsym {self.info_name} --help-all"
         while text.count("\n") >= SCREEN and (len(prose) > 1 or len(examples) > FEWEST):
             (prose if len(prose) > 1 else examples).pop()
             own.help = "\n\n".join([*prose, more, "\n".join(examples)])
             text = own.get_help(self)
         rare = [option for option in own.params if option.name in getattr(own, "rare", ())]
         if text.count("\n") >= SCREEN and rare:
-            more = f"{len(rare)} further options, and all that there is to say: mbsym explain {self.info_name}"
+            more = f"{len(rare)} further options, and all that there is to say: mbsym {self.info_name} --help-all"
             own.help = "\n\n".join([*prose, more, "\n".join(examples)])
             own.params = [option for option in own.params if option not in rare]
             text = own.get_help(self)
@@ -126,7 +126,7 @@ class LazyGroup(click.Group):
         if not any(option.name == "debug" for option in command.params):
             if name == "new" or any(option.name == "out" for option in command.params):
                 command.params.append(_force())
-            command.params.append(_debug())
+            command.params += [_debug(), _help_all()]
         return command
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
@@ -249,6 +249,18 @@ def _force() -> click.Option:
 
     help_text = "Replace files that mbsym did not write, too."
     return click.Option(["--force"], is_flag=True, expose_value=False, callback=want, help=help_text)
+
+
+def _help_all() -> click.Option:
+    def whole(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+        if wanted:
+            plain = click.Context(context.command, context.parent, context.info_name, max_content_width=100)
+            click.echo(context.command.get_help(plain))
+            context.exit()
+
+    return click.Option(
+        ["--help-all"], is_flag=True, is_eager=True, expose_value=False, callback=whole, help="Show all of it and exit."
+    )
 
 
 def _debug() -> click.Option:

@@ -399,7 +399,7 @@ WIDTH = 120
 
 def show(blocks: Iterable[Block], language: str) -> None:
     """Prints them beneath the name of a system."""
-    writer = Writer(Language(language), width=(asked_width() or WIDTH) - 2)
+    writer = Writer(Language(language), True, width=(asked_width() or WIDTH) - 2)
     show_lines(writer.document(blocks))
 
 

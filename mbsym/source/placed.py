@@ -17,7 +17,7 @@ MAX_TEXT = 256 * 1024
 MAX_DEPTH = 16
 
 #: What stands for no value in YAML, where it is not quoted.
-NULL = ("~", "null", "Null", "NULL")
+NULL = ("~", "null")
 
 
 @dataclass(frozen=True, slots=True)

@@ -400,7 +400,7 @@ def why_no_name(name: str) -> tuple[str, str | None] | None:
         return "it is a number", None
     if name == "t":
         return "it is the time", None
-    if name.lower() in ("true", "false", "null"):
+    if name in ("true", "false", "null"):
         return "it is a word of YAML, and no text", Message("write [[name]]1", name=name)
     if keyword.iskeyword(name):
         hint = Message("write lam or lambda1") if name == "lambda" else Message("write [[name]]1", name=name)

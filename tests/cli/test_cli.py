@@ -372,7 +372,8 @@ def test_every_help_fills_a_screen_at_most_and_explain_has_the_rest(name: str, m
     assert mbsym(name, "--help").stdout.count("\n") <= SCREEN
     whole = mbsym("explain", name).stdout
     options = [word for option in main.get_command(Context(main), name).params for word in option.opts]
-    assert all(option in whole for option in options if option.startswith("--"))
+    for text in (whole, mbsym(name, "--help-all").stdout):
+        assert all(option in text for option in options if option.startswith("--"))
 
 
 @pytest.mark.parametrize("number", PROBLEMS)

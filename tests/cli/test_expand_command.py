@@ -33,10 +33,10 @@ def test_the_damper_as_json_and_as_text():
     assert data["steady"]["attracts"]["outcome"] == "holds"
     assert data["steady"]["flow"]["positive"] == ["(s*omega + eta)*(s*omega + eta - omega)"]
     told = " ".join(run(SLOW, "--order", "1").stdout.split())
-    assert "x(1) = (rho*G + (lam - r)*p)/kappa p'(0) = -lam*q q'(0) = lam*p" in told
-    assert told.endswith("Letters used here: lam = (s - 1)*r + eta G = p**2 + q**2")
+    assert "x(1) = (rho G + (lam - r) p)/kappa p'(0) = -lam q q'(0) = lam p" in told
+    assert told.endswith("Letters used here: lam = (s - 1) r + eta G = p^2 + q^2")
     told = " ".join(run(SLOW, "--order", "1", "--in", "none").stdout.split())
-    assert "x(1) = rho*(p**2 + q**2)/kappa + (s - 2)*p*r/kappa + eta*p/kappa p'(0) = " in told
+    assert "x(1) = rho (p^2 + q^2)/kappa + (s - 2) p r/kappa + eta p/kappa p'(0) = " in told
     assert "Letters used here" not in told
     assert "Whether the roots of the flow on it have negative real parts is undecided" in told
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -162,10 +163,10 @@ def test_one_scene_that_has_no_solution_leaves_the_others(tmp_path: Path) -> Non
     assert "rk45" in done.output
 
 
-def test_two_files_of_one_name_would_share_a_folder(tmp_path: Path) -> None:
+def test_two_files_of_one_name_have_folders_of_their_own(tmp_path: Path) -> None:
     copy = tmp_path / PENDULUM.name
-    copy.write_bytes(PENDULUM.read_bytes())
+    copy.write_text(PENDULUM.read_text(encoding="utf-8").replace("name: ", "name: Other "), encoding="utf-8")
     done = mbsym("tradeoff", PENDULUM, copy, *QUICK, "-o", tmp_path / "out")
-    assert done.exit_code == 2
-    assert "conflicting-files" in done.output + done.stderr
-    assert not (tmp_path / "out").exists()
+    assert done.exit_code == 0, done.output + done.stderr
+    written = [json.loads(x.read_text(encoding="utf-8")) for x in (tmp_path / "out").glob("*/tradeoff.json")]
+    assert sorted(x["system"] for x in written) == ["Other Simple pendulum", "Simple pendulum"]
