@@ -874,3 +874,15 @@ def test_a_rest_under_a_constraint_without_exact_values_is_listed() -> None:
         "loads:\n  - potential: exp(x) - x + y**2\nconstraints:\n  - relation: u = x + y**2\nmotion: {}\n"
     ).equilibria
     assert [str(rest.verdict.word) for rest in found.equilibria] == ["stable"]
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_nothing_is_said_where_a_damper_is_infinite(power: int) -> None:
+    """V = ((x - 1)^2 + y^2)^power with friction x'/(x - 1)^2: at the minimum there are no equations of motion."""
+    found = mbsym.loads(
+        "mbsym: 1\nname: pole\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}\n"
+        f"loads:\n  - potential: ((x - 1)**2 + y**2)**{power}\n  - rayleigh: x_dot**2/(x - 1)**2/2 + y_dot**2/2\n"
+        "motion: {}\n"
+    ).equilibria
+    assert [rest.verdict.word.open for rest in found.equilibria] == [True]

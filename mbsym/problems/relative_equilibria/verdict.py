@@ -108,6 +108,8 @@ class LinearAtRest:
         )
         conserved, only = self.law is EnergyLaw.CONSERVED, len(remaining) == len(names)
         damping = [[place.ball(self.matrices[1][i][j]) for j in remaining] for i in remaining]
+        if not all(x.is_finite() for row in damping for x in row):
+            return None
         verdict = by_potential(len(remaining), derivative, field, conserved, only, gyroscopic, damping)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
 

@@ -86,6 +86,8 @@ def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows]
 
 
 def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool, exact: bool) -> Verdict:
+    if not all(x.is_finite() for rows in (m, d, g, k, n) for row in rows for x in row):
+        return undecided(Because.NOT_ENCLOSED)
     if not _positive(m):
         return undecided(Because.MASS_SINGULAR)
     shown = {
