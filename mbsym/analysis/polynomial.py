@@ -61,8 +61,9 @@ class Setting:
     """The field of a system: ``whole`` over all parameters, ``field`` with numbers in place of some.
 
     ``kinds``: variables that have one weight, speeds first; ``known``: integrals of problem 7 over ``field``;
-    ``aside``: positions on which no equation depends, which are no variables; ``rational``: integrals of problem 7
-    whose denominators hold variables.
+    ``aside``: positions on which no equation depends, which are no variables; ``inside``: those that are none,
+    either, but stand in exponentials or reciprocals; ``rational``: integrals of problem 7 whose denominators hold
+    variables.
     """
 
     whole: PolynomialField
@@ -72,6 +73,7 @@ class Setting:
     vectors: tuple[tuple[str, ...], ...]
     known: tuple[tuple[str, Any], ...]
     aside: tuple[str, ...] = ()
+    inside: tuple[str, ...] = ()
     rational: tuple[str, ...] = ()
     #: Whether constraints tie positions that are variables.
     tied: bool = False
@@ -112,9 +114,10 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
     vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
     exponentials = tuple(name for name in whole.variables if name.startswith("exp("))
+    held = analysis.ring.dependencies(transfer.back(_product(whole)), analysis.system.coordinates)
+    inside = tuple(name for name in held if name not in whole.variables and f"sin({name})" not in whole.variables)
     if not declared:
         speeds: tuple[str, ...] = tuple(name for name in whole.variables if name not in exponentials)
-        held = analysis.ring.dependencies(transfer.back(_product(whole)), analysis.system.coordinates)
         told = {analysis.ring.generators[k].name for k in transfer.images}
         aside = tuple(name for name in analysis.system.coordinates if name not in {*held, *told})
     else:
@@ -133,7 +136,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     if len(known) < len(listed):
         follows = cache(partial(_following, analysis, dict(values or {}), transfer.images))
     tied = equations.constraints is not None and equations.constraints.position_rank > 0 and bool(whole.relations)
-    there = Setting(whole, field, transfer, kinds, tuple(groups), tuple(known), aside, rational, tied)
+    there = Setting(whole, field, transfer, kinds, tuple(groups), tuple(known), aside, inside, rational, tied)
     return there if follows is None else replace(there, follows=lambda formula: follows()(formula))
 
 
@@ -275,7 +278,7 @@ def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None 
         else generator
         for generator in integrals.generators
     )
-    found = replace(integrals, aside=there.aside, rational=there.rational, tied=there.tied)
+    found = replace(integrals, aside=there.aside, inside=there.inside, rational=there.rational, tied=there.tied)
     return replace(found, generators=tuple(named))
 
 

@@ -54,7 +54,11 @@ def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibr
     """Coordinates without an exact text are parameters that are known by their enclosures."""
     if equilibrium.coordinates_of:
         return equilibrium
-    enclosed = {f"{_PLACE}{x.name}": equilibrium.enclosures[x.name] for x in equilibrium.values if not x.exact}
+    enclosed = {
+        f"{_PLACE}{x.name}": equilibrium.enclosures[x.name]
+        for x in equilibrium.values
+        if not x.exact and x.name in bare.coordinates
+    }
     places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in equilibrium.values}
     described = {entry.coordinate for entry in bare.motion}
     follow = {name for name, velocity in zip(bare.coordinates, bare.velocities, strict=True) if velocity in places}

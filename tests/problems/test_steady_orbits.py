@@ -130,6 +130,87 @@ motion: {{{driven}: {{rate: {rate}}}, q: 0}}
     assert words == {q: down, -q: down, 0: up, round(math.pi, 6): up}
 
 
+AXLE = """
+mbsym: 1
+name: Axle
+parameters:
+  {a: {value: 0.1}, b: {value: 1/3}, r: {value: 1/4}, w: {value: W_LEFT}, u: {value: W_RIGHT}}
+bodies:
+  - name: frame
+    attached to: 0
+    connection point: [x, y, r]
+    rotation: {axes: [3], angles: [theta]}
+    mass centre: FORWARDS
+    mass: 2
+    inertia about: mass centre
+    inertia: [1/2, 1/2, 1/2]
+    coordinates: [x, y, theta]
+  - {name: left, attached to: frame, connection point: LEFT, rotation: {axes: [TURNED], angles: [p]}, mass: 1,
+     inertia about: mass centre, inertia: INERTIA}
+  - {name: right, attached to: frame, connection point: RIGHT, rotation: {axes: [TURNED], angles: [q]}, mass: 1,
+     inertia about: mass centre, inertia: INERTIA}
+constraints:
+  - rolling: {body: left, point: [0, 0, -r], axes: frame, on: ground}
+  - rolling: {body: right, point: [0, 0, -r], axes: frame, on: ground}
+motion: {p: {rate: ROLL*w}, q: {rate: ROLL*u}}
+"""
+
+
+@pytest.mark.parametrize(
+    "axle",
+    [
+        {"FORWARDS": "[a, 0, 0]", "LEFT": "[0, b, 0]", "RIGHT": "[0, -b, 0]", "TURNED": "2", "ROLL": "1",
+         "INERTIA": "[1/16, 1/8, 1/16]"},
+        {"FORWARDS": "[0, a, 0]", "LEFT": "[-b, 0, 0]", "RIGHT": "[b, 0, 0]", "TURNED": "1", "ROLL": "-1",
+         "INERTIA": "[1/8, 1/16, 1/16]"},
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize(
+    ("rates", "words"),
+    [((2, 2), {Word.ASYMPTOTIC_BUT_STEADY}), ((-2, -2), {Word.UNSTABLE}), ((2, 3), set()), ((-2, 2), set())],
+)
+def test_two_wheels_on_an_axle(axle: dict[str, str], rates: tuple[int, int], words: set[Word]) -> None:
+    """v' = a W^2 and I W' = -m a v W, W = (u - w) r/(2 b): straight on alone, as a sleigh, whichever axis is forwards.
+
+    At theta = 0 other rows are independent along the one axis than along the other.
+    """
+    text = AXLE.replace("W_LEFT", str(rates[0])).replace("W_RIGHT", str(rates[1]))
+    for word, entry in axle.items():
+        text = text.replace(word, entry)
+    found = listed(text)
+    assert found.complete
+    assert {x.verdict.word for x in found.equilibria} == words
+
+
+def test_a_ball_that_circles_in_a_vertical_cylinder() -> None:
+    """At constant height J W s = -m g r for its spin s about the outward normal (Neimark & Fufaev, chapter II).
+
+    About the vertical it turns at -W l/r, by the arm at W less; gamma is the angle about the axis of the sum.
+    """
+    J, W, l, r, mg = 1 / 250, 3, 1 / 2, 1 / 10, 9.81
+    spin = math.hypot(mg * r / (J * W), W * l / r + W)
+    found = listed(f"""
+mbsym: 1
+name: Ball
+bodies:
+  - {{name: arm, attached to: 0, rotation: {{axes: [3], angles: [phi]}}, mass: 0, connection point: [0, 0, z],
+     coordinates: [phi, z]}}
+  - name: ball
+    attached to: arm
+    connection point: [{l}, 0, 0]
+    rotation: {{axes: [1, 2, 3], angles: [alpha, beta, gamma]}}
+    mass: 1
+    inertia about: joint
+    inertia: [{J}, {J}, {J}]
+loads: [uniform gravity: {{vector: [0, 0, -{mg}]}}]
+constraints: [rolling: {{body: ball, point: [{r}, 0, 0], axes: arm, on: ground}}]
+motion: {{phi: {{rate: {W}}}}}
+""")
+    axis = math.asin(mg * r / (J * W) / spin)
+    assert sorted(map(abs, column(found, "gamma_dot"))) == pytest.approx([spin] * 4)
+    assert sorted(map(math.sin, column(found, "beta"))) == pytest.approx([-math.sin(axis)] * 2 + [math.sin(axis)] * 2)
+
+
 def test_the_circles_of_the_bicycle() -> None:
     """Hands-free circular motions (Basu-Mandal et al. 2007), of which a part with the handlebar reversed is stable.
 

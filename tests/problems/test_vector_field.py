@@ -15,6 +15,8 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.invariant import invariant_sets_of
 from mbsym.analysis.polynomial import integrals_of, setting
 from mbsym.problems.vector_field import vector_field
+from mbsym.report.plain_writer import Writer
+from mbsym.report.words.integrals_words import sentences
 
 
 def _field(path):
@@ -397,6 +399,24 @@ def test_positions_that_are_divided_by():
     assert field.reduced(field.derivative(turning)) == 0
     assert (found.complete, found.independent) == (True, 3)
     assert found.rational == ()
+
+
+@pytest.mark.parametrize(
+    ("potential", "outside"),
+    [
+        ("1/x**2 + 2/y**2", "x, y"),  # (x y' - y x')^2 + 2 (y^2/x^2 + 2 x^2/y^2) is one
+        ("1/x**2 + 2/y**2 + x**2", "y"),
+        ("exp(x) + y**2", "x"),
+        ("x**2 + y**2 + 1/x**2 + 2/y**2", ""),
+        ("1/(x**2 + y**2)", ""),
+    ],
+)
+def test_positions_that_stand_in_variables_alone_are_told(potential, outside):
+    """A list up to a degree is not one of polynomials in x where 1/x is a variable, and x is none."""
+    found, _ = _integrals(POINT.format(place="x, y, 0", names="x, y", potential=potential))
+    told = [Writer().said(sentence) for sentence in sentences(found)]
+    text = f"Integrals that hold {outside} outside of these variables are not looked for."
+    assert [x for x in told if "outside of" in x] == ([text] if outside else [])
 
 
 @pytest.mark.parametrize(

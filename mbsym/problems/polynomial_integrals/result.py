@@ -72,7 +72,8 @@ class PolynomialIntegrals:
     """Polynomials in ``generators`` are all integrals of weighted degree up to ``degree``, where ``complete``.
 
     ``independent``: so many of them are, as functions (a lower bound).  ``aside``: positions of the system on which no
-    equation depends: they are no variables of the field, and integrals that hold them are not looked for.
+    equation depends: they are no variables of the field, and integrals that hold them are not looked for.  ``inside``:
+    those that are no variables, but stand in exponentials and reciprocals that are.
     ``rational``: integrals of problem 7 that are quotients of two polynomials in the variables, and no polynomials.
     ``tied``: constraints tie positions, and may have several branches, all of which an integral is one of.
     """
@@ -84,6 +85,7 @@ class PolynomialIntegrals:
     counts: tuple[Count, ...]
     independent: int
     aside: tuple[str, ...] = ()
+    inside: tuple[str, ...] = ()
     rational: tuple[str, ...] = ()
     tied: bool = False
 

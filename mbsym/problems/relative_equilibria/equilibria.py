@@ -253,7 +253,10 @@ def _by_rates(carried: Orbits, listed: Equilibria) -> Equilibria:
         return re.sub(r"\w+", lambda word: rates.get(word[0], word[0]), text)
 
     def named(equilibria: Iterable[RelativeEquilibrium]) -> tuple[RelativeEquilibrium, ...]:
-        return tuple(replace(x, values=called(x.values)) for x in equilibria)
+        return tuple(
+            replace(x, values=called(x.values), enclosures={rates.get(k, k): y for k, y in x.enclosures.items()})
+            for x in equilibria
+        )
 
     families = tuple(
         replace(

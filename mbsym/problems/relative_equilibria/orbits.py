@@ -29,6 +29,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from random import Random
 from typing import Any
 
 from flint import arb, arb_mat, ctx
@@ -39,9 +40,11 @@ from mbsym.algebra.krawczyk import pivot_rows
 from mbsym.algebra.matrices import echelon, null_vectors
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.rows import Row
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.states import SEED
 from mbsym.model.system import velocity_name
 from mbsym.problems import energy as energies
 from mbsym.problems import equations
@@ -223,16 +226,20 @@ def orbits(first: Rest, constraints: Constraints) -> Orbits | None:
     if not {names.index(name) for name in first.turning} <= {*along}:
         return None
     standing = _standing(ring, [names[k] for k in along])
-    rows = [
-        replace(
-            row,
-            position=None if row.position is None else ring.reduce(ring.substitute(row.position, standing)),
-            velocity=ring.reduce(ring.substitute(row.velocity, standing)),
-            acceleration=ring.zero,
-            partials=tuple(ring.reduce(ring.substitute(x, standing)) for x in row.partials),
-        )
-        for row in (first.rows[k] for k in constraints.independent)
-    ]
+    rows = _independent(
+        ring,
+        [
+            replace(
+                row,
+                position=None if row.position is None else ring.reduce(ring.substitute(row.position, standing)),
+                velocity=ring.reduce(ring.substitute(row.velocity, standing)),
+                acceleration=ring.zero,
+                partials=tuple(ring.reduce(ring.substitute(x, standing)) for x in row.partials),
+            )
+            for row in first.rows
+        ],
+        constraints.independent,
+    )
     given = {names.index(entry.coordinate) for entry in first.system.motion}
     order = sorted((k for k in along if k not in given), key=lambda k: (names[k] not in constraints.dependent, -k))
     rates, every = _rates(first, rows, carrying, order)
@@ -272,6 +279,20 @@ def _standing(ring: Ring, names: Sequence[str]) -> dict[int, Polynomial]:
         if name in ring.angles:
             images |= {ring.index("sine", name): ring.zero, ring.index("cosine", name): ring.one}
     return images
+
+
+def _independent(ring: Ring, rows: Sequence[Row], elsewhere: Sequence[int]) -> list[Row]:
+    """As many independent rows where the coordinates k are 0 as ``elsewhere``, where possible the same.
+
+    Rows mix along a symmetry, which leaves their rank as it is; but which of them are independent changes: across an
+    axle along the first axis of the ground one row of each wheel says the same, of an axle that is askew none.
+    """
+    source = Random(SEED)
+    place = {name: arb(source.uniform(0.1, 1.0)) for name in ring.names()}
+    order = [*elsewhere, *(k for k in range(len(rows)) if k not in elsewhere)]
+    table = [[ring.evaluate(x, place) for x in rows[k].partials] for k in order]
+    chosen = [order[i] for i, _ in eliminated(table, range(len(table[0]))).pivots][: len(elsewhere)]
+    return [rows[k] for k in (chosen if len(chosen) == len(elsewhere) else elsewhere)]
 
 
 def _rates(

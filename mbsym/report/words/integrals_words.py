@@ -172,8 +172,9 @@ def _left_out(polynomial_integrals: PolynomialIntegrals) -> Iterator[Said]:
     if polynomial_integrals.rational:
         text = "Integrals of problem 7 that are no polynomials in these variables, but quotients of such: [[names]]."
         yield say(text, names=joined((worded(x) for x in polynomial_integrals.rational), ", "))
-    if any(name.startswith("exp(") for name in polynomial_integrals.field.variables):
-        yield Said("Polynomials are those in these variables: what stands in exponentials is none by itself.")
+    if polynomial_integrals.inside:
+        text = "Integrals that hold [[names]] outside of these variables are not looked for."
+        yield say(text, names=named(polynomial_integrals.inside))
 
 
 _EVERY = {
