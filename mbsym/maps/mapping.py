@@ -178,7 +178,7 @@ def with_onsets(diagram: Map, onsets: SoftBorders, watch: Watch) -> Map:
 
 
 def with_nonlinear(diagram: Map, analysis: Analysis, watch: Watch) -> Map:
-    """The map with what the nonlinear system shows where the first approximation and the energy are open.
+    """The map with what the nonlinear system shows where the first approximation and the energy leave more to be said.
 
     Of one coordinate whose K vanishes in the whole section the first term of V decides.  Else it is what the one judge
     says of rational samples alone: only where the axes and all that is given are parameters with numbers, and at the
@@ -197,7 +197,8 @@ def with_nonlinear(diagram: Map, analysis: Analysis, watch: Watch) -> Map:
     def asked(cell: Cell) -> Cell:
         nonlocal left
         point = _coordinates(cell.sample)
-        if cell.judged is None or not cell.judged.verdict.word.open or not all(isinstance(x, fmpq) for x in point):
+        first = None if cell.judged is None else cell.judged.verdict
+        if first is None or not all(isinstance(x, fmpq) for x in point) or not judge.may_add(first):
             return cell
         if not left:
             return cell
@@ -205,10 +206,10 @@ def with_nonlinear(diagram: Map, analysis: Analysis, watch: Watch) -> Map:
         values = {axis.name: rationals.fraction(x) for axis, x in zip(diagram.axes, point, strict=True)}
         watch("terms of higher order", cell.number, len(diagram.regions))
         try:
-            verdict = judge.decided(cell.judged.verdict, {**there.numbers, **values})
+            verdict = judge.decided(first, {**there.numbers, **values})
         except Failure:
             return cell
-        return cell if verdict.word.open else replace(cell, nonlinear=verdict)
+        return cell if verdict.word.open or verdict.word is first.word else replace(cell, nonlinear=verdict)
 
     try:
         regions, arcs, corners = (tuple(map(asked, part)) for part in (diagram.regions, diagram.arcs, diagram.corners))

@@ -212,7 +212,7 @@ def test_the_command_tells_them(tmp_path: Path) -> None:
     scale = "t=tau/w,k=m*w**2,x=X*x1,c=m*w**2*q/X**2"
     done = CliRunner().invoke(main, ["oscillations", str(path), "--scale", scale])
     assert done.exit_code == 0, done.output
-    assert "x1(1) = -q*amplitude**3*sin(phase)**2*cos(phase)/8" in done.output
+    assert "x1(1) = -q amplitude^3 sin(phase)^2 cos(phase)/8" in done.output
     data = json.loads(CliRunner().invoke(main, ["oscillations", str(path), "--scale", scale, "--json"]).output)
     assert data["corrections"] == ["3*q*amplitude**2/8", "-21*q**2*amplitude**4/256"]
     wrong = CliRunner().invoke(main, ["oscillations", str(path), "--scale", "x=eps*X*x1"])
@@ -223,17 +223,17 @@ def test_the_command_tells_them(tmp_path: Path) -> None:
 def test_common_denominators_stand_once_in_the_text() -> None:
     words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
     done = CliRunner().invoke(main, [*words, "--in", "none"])
-    assert "p(0) = -lx*r_0/D1\n" in done.output
-    assert "D1 = r_0*(A - C) - lz\n" in done.output
+    assert "p(0) = -lx r_0/D1\n" in done.output
+    assert "D1 = r_0 (A - C) - lz\n" in done.output
 
 
 def test_the_authors_letters_come_before_denominators_of_ours() -> None:
     """(41) of the paper: what is shorter in them has no D1, and no D is explained that does not stand there."""
     words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
     done = CliRunner().invoke(main, words).output
-    assert "p(0) = P0*r_0\n" in done
-    assert "gamma2(1) = P0*gamma3_0*sin(phase)\n" in done
-    assert "p(1) = r_0*(M3*lam1*cos(phase) + lam)\n" in done  # as in the claim (41)
+    assert "p(0) = P0 r_0\n" in done
+    assert "gamma2(1) = P0 gamma3_0 sin(phase)\n" in done
+    assert "p(1) = r_0 (M3 lam1 cos(phase) + lam)\n" in done  # as in the claim (41)
     series = done.partition("Secular terms")[0]
     series, _, explained = series.partition("  with:")
     for name in ("D1", "D2", "D3"):
