@@ -182,6 +182,12 @@ def test_two_wheels_on_an_axle(axle: dict[str, str], rates: tuple[int, int], wor
     assert {x.verdict.word for x in found.equilibria} == words
 
 
+def test_of_a_sleigh_that_moves_no_position_is_told_to_be_one_of_rest() -> None:
+    for v, rests in ((1, False), (0, True)):
+        found = listed(shipped("chaplygin-sleigh", ("a: 0.3, v: 1", f"a: 0.3, v: {v}")))
+        assert ("every position is an equilibrium" in found.remarks) is rests
+
+
 def test_a_ball_that_circles_in_a_vertical_cylinder() -> None:
     """At constant height J W s = -m g r for its spin s about the outward normal (Neimark & Fufaev, chapter II).
 

@@ -537,7 +537,9 @@ class _ChartSearch(SearchInBoxes):
 
     def _add_free_point(self) -> None:
         self._add(self._zero(), EXACT)
-        self.remarks.append(Message("every position is an equilibrium"))
+        moves = isinstance(self.rest, Orbits) and any(not x.is_zero() for x in self.rest.speeds.values())
+        every = "through every position one steady motion leads" if moves else "every position is an equilibrium"
+        self.remarks.append(Message(every))
 
     def _add_family(self, table: Unknowns, family: Family) -> None:
         place = self._place(table, family.sample)
