@@ -113,7 +113,8 @@ class Cell:
     ``said`` holds at the sample exactly, ``certainty`` is how surely it holds in the whole cell (of counted equilibria:
     their number).  Where nothing is said ``lack`` says why; ``broken``: the demands that are not kept there.
     ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.  ``nonlinear``:
-    of a verdict that leaves the motion open, or stable where energy may be lost, what the nonlinear system shows at the sample alone.
+    of a verdict that leaves the motion open, or stable where energy may be lost, what the nonlinear system shows at the
+    sample alone.
     """
 
     shape: Shape
