@@ -115,8 +115,8 @@ class Place(Part, frozen=True, kw_only=True):
     border: BorderOf
     nonlinear: Annotated[
         Verdict | UnsetType,
-        "of a verdict that leaves the motion open, or stable where energy may be lost: what the nonlinear system shows at "
-        "the exact point alone",
+        "of a verdict that leaves the motion open, or stable where energy may be lost: what the nonlinear system shows "
+        "at the exact point alone",
         From(),
     ] = UNSET
 
