@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.matrices import determinant
 from mbsym.analysis import approximation, constrained, given, higher
 from mbsym.analysis.judge import Judge
@@ -19,6 +19,7 @@ from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
 from mbsym.mechanics.variables import ring_environment
+from mbsym.model.substitution import with_free_rates
 from mbsym.problems import dissipation, energy, equations, equilibrium, integrals, stability
 from mbsym.problems.checks import EXACT, NUMERICAL
 from mbsym.problems.dissipation import Balance
@@ -69,7 +70,27 @@ def stability_of(analysis: Analysis) -> Stability:
         if other is None:
             raise
         return other
+    judgement = _of_a_family(analysis, judgement)
     return (in_other_angles(analysis) if judgement.verdict.coordinates_singular else None) or judgement
+
+
+def _of_a_family(analysis: Analysis, judgement: Stability) -> Stability:
+    """With the verdict at the values where zero roots are those of steady motions at other rates.
+
+    A rate may be a number in the description: the motion is the same as with a parameter of that value.
+    """
+    here = judgement.numerical
+    if here is None or not analysis.system.constraints or not here.because(Because.MORE_ZERO_ROOTS):
+        return judgement
+    system = with_free_rates(analysis.system)
+    if system is analysis.system:
+        return judgement
+    try:
+        there = type(analysis)(system, (), analysis.terms, suggests=False).stability.numerical
+    except (Failure, *NOT_THERE):
+        return judgement
+    known = there is not None and not there.because(Because.MORE_ZERO_ROOTS)
+    return replace(judgement, numerical=there) if known else judgement
 
 
 def in_other_angles(analysis: Analysis) -> Stability | None:

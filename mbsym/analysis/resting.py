@@ -13,9 +13,10 @@ from mbsym.analysis import higher
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.stages import Unavailable
-from mbsym.expressions.tree import ZERO, Expression, Name, multiply, number
+from mbsym.expressions.tree import Expression, Name, multiply, number
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Value, at_numbers
+from mbsym.model.substitution import with_free_rates
 from mbsym.model.system import MotionEntry, Parameter, System
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
 from mbsym.problems.relative_equilibria.listing import CoordinateValue, RelativeEquilibrium
@@ -67,12 +68,8 @@ def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibr
         for name, (value, rate) in motion_values(bare).items()
         if name not in follow and (name in places or not bare.constraints or name in described)
     )
-    rates = {f"{_RATE}{x.coordinate}": x.rate for x in motion if bare.constraints and x.rate != ZERO}
-    motion = tuple(
-        replace(x, rate=Name(f"{_RATE}{x.coordinate}")) if f"{_RATE}{x.coordinate}" in rates else x for x in motion
-    )
-    parameters = (*map(Parameter, enclosed), *(Parameter(name, "nonzero", rate) for name, rate in rates.items()))
-    analysis = Analysis(replace(bare, motion=motion, parameters=parameters), ())
+    there = replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed)))
+    analysis = Analysis(with_free_rates(there) if bare.constraints else there, ())
     try:
         if any(map(equilibrium.verdict.because, _KNOWN_BETTER)) and bare.constraints:
             stability = None if enclosed else analysis.stability
@@ -91,9 +88,8 @@ def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibr
 #: Why the list leaves open what the whole of problem 6 may decide, where constraints tie velocities.
 _KNOWN_BETTER = (Because.NO_EQUATIONS, Because.MORE_ZERO_ROOTS, Because.NEAR_BORDER)
 
-#: How names of parameters begin that are coordinates of a place, or under constraints its rates (steady motions at
-#: other rates are a family then).  Parameters of the description are numbers by then.
-_PLACE, _RATE = "place_dot_", "rate_dot_"
+#: How names of parameters begin that are coordinates of a place; parameters of the description are numbers by then.
+_PLACE = "place_dot_"
 
 
 def _exact(value: CoordinateValue) -> Expression:

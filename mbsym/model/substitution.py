@@ -33,7 +33,7 @@ from mbsym.expressions.tree import (
 from mbsym.model.constraints import Relation
 from mbsym.model.inputs import Input
 from mbsym.model.loads import CoordinateDamper, CoordinateSpring, ForceFunction, GeneralizedForce, Load, Rayleigh
-from mbsym.model.system import MotionEntry, System
+from mbsym.model.system import MotionEntry, Parameter, System
 
 _EXPRESSIONS = (Number, Name, Negative, Operation, Call)
 _FOLDING = {"+": add, "-": subtract, "*": multiply}
@@ -211,3 +211,20 @@ def _told_by(system: System, name: str, value: Expression, free: Sequence[str]) 
         initial=tuple(entry for entry in system.initial if entry.coordinate in free),
     )
     return put(there, images, folded)
+
+
+def with_free_rates(system: System) -> System:
+    """Rates of the unperturbed motion that are numbers, not 0, as parameters of these values; itself where none is.
+
+    Steady motions at other rates are a family then, whose members differ in parameters.
+    """
+    free = {x.coordinate: x.rate for x in system.motion if not names(x.rate) and x.rate != ZERO}
+    if not free:
+        return system
+    motion = (replace(x, rate=Name(_RATE + x.coordinate)) if x.coordinate in free else x for x in system.motion)
+    rates = (Parameter(_RATE + name, "nonzero", rate) for name, rate in free.items())
+    return replace(system, motion=tuple(motion), parameters=(*system.parameters, *rates))
+
+
+#: How names of parameters begin that are rates; none that is declared has this ending of velocities inside.
+_RATE = "rate_dot_"
