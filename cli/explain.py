@@ -102,13 +102,13 @@ def known_words() -> list[str]:
 
 def _command(word: str) -> Iterator[str]:
     """The help of a command."""
-    from mbsym_cli.main import COMMANDS, main
+    from mbsym_cli.main import COMMANDS, main, whole_help
 
     if word in COMMANDS:
         context = click.Context(main, info_name="mbsym")
         subcommand = main.get_command(context, word)
         assert subcommand is not None
-        yield subcommand.get_help(click.Context(subcommand, context, word, max_content_width=100))
+        yield whole_help(subcommand, context, word)
 
 
 def _verdict(word: str) -> Iterator[str]:

@@ -251,11 +251,15 @@ def _force() -> click.Option:
     return click.Option(["--force"], is_flag=True, expose_value=False, callback=want, help=help_text)
 
 
+def whole_help(command: click.Command, parent: click.Context | None, name: str | None) -> str:
+    """All that there is to say of a command, however long."""
+    return command.get_help(click.Context(command, parent, name, max_content_width=100))
+
+
 def _help_all() -> click.Option:
     def whole(context: click.Context, _: click.Parameter, wanted: bool) -> None:
         if wanted:
-            plain = click.Context(context.command, context.parent, context.info_name, max_content_width=100)
-            click.echo(context.command.get_help(plain))
+            click.echo(whole_help(context.command, context.parent, context.info_name))
             context.exit()
 
     return click.Option(
