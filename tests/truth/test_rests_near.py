@@ -58,6 +58,24 @@ def test_an_energy_without_minimum_proves_nothing(potential: str, place: str) ->
     assert word(text).open
 
 
+@pytest.mark.parametrize(
+    ("potential", "wanted"),
+    [
+        (HELD, Word.STABLE),
+        (WELL, Word.STABLE_BUT_CYCLIC),
+        ("-k*x**2/2 + c*th**2/2", Word.UNSTABLE),
+        # It rests across the slope, where it could not without its edge; turned by a little it slides away.
+        ("k*y", Word.UNDECIDED),
+    ],
+)
+def test_what_is_said_of_a_skate_for_all_parameters(potential: str, wanted: Word) -> None:
+    text = SKATE.replace("V,", f"{potential},").replace("Y", "0").replace("d*(", "0*(").replace(", d: real", "")
+    text = text.replace("k: real, c: real", "k: positive, c: positive").replace("values: {k: 1, c: 4, d: D}\n", "")
+    found = mbsym.loads(text, (4, 5, 6)).stability
+    assert found.verdict.word is wanted
+    assert found.numerical is None or found.numerical.word is wanted
+
+
 VALLEY = """
 mbsym: 1
 name: valley
