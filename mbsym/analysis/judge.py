@@ -147,8 +147,12 @@ class Judge:
         return replace(apart, reasons=tuple(sorted({*alike[0][1].reasons, about}, key=lambda reason: reason.rank)))
 
     def _along_rests(self, values: Mapping[str, Any]) -> Verdict | None:
-        """Instability by slow motions along rests near by."""
-        return families.by_rests_near(self.analysis, values, decaying=False)
+        """Instability by slow motions along rests near by, or by those of one coordinate."""
+        along = families.by_rests_near(self.analysis, values, decaying=False)
+        try:
+            return along or families.by_one_coordinate(self.analysis, lambda x: self._of(x)(values))
+        except (Failure, *NOT_THERE):
+            return None
 
     def _by_what_is_near(self, values: Mapping[str, Any]) -> Verdict | None:
         """What rests near by say of one, or its energy without constraints on velocities."""
@@ -165,13 +169,13 @@ class Judge:
         try:
             balance = of.balance if values is None else of.balance.at(values)
             if families.at_rest(of) and balance.law.bounded:
-                return families.by_energy_of_more(of.system, lambda x: judged(self._of_more(x)))
+                return families.by_energy_of_more(of.system, lambda x: judged(self._of(x)))
         except (Failure, *NOT_THERE):  # without these constraints there may be no such rest
             return None
         return None
 
     @cache  # noqa: B019
-    def _of_more(self, system: System) -> Judge:
+    def _of(self, system: System) -> Judge:
         return Judge(type(self.analysis)(system, (), self.analysis.terms, suggests=False))
 
     @cached_property
