@@ -150,7 +150,7 @@ class Judge:
         """Instability by slow motions along rests near by, or by those of one coordinate."""
         along = families.by_rests_near(self.analysis, values, decaying=False)
         try:
-            return along or families.by_one_coordinate(self.analysis, lambda x: self._of(x)(values))
+            return along or families.by_one_coordinate(self.analysis, values, lambda x: self._of(x)(values))
         except (Failure, *NOT_THERE):
             return None
 

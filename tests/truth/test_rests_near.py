@@ -226,3 +226,20 @@ def test_one_coordinate_moves_while_the_other_rests(potential: str, force: str, 
     text = VALLEY.replace("POINT", "x, y").replace("V,", f"{potential},").replace("FORCE", force).replace("X", "0")
     found = word(text)
     assert found.open if wanted is None else found is wanted
+
+
+@pytest.mark.parametrize(
+    ("loads", "wanted"),
+    [
+        ("potential: abs(x)**3", Word.STABLE),
+        ("potential: 2*abs(3*x)**3 - x**3", Word.STABLE),  # 53 x^3 and 55 |x|^3
+        ("potential: abs(x)**3/2 - x**3", Word.UNSTABLE),  # -x^3/2 for x > 0
+        ("potential: x**4 - abs(x)**3", Word.UNSTABLE),
+        ("potential: x**3 + abs(x)**3", Word.UNDECIDED),  # every x < 0 is a rest
+        ("potential: abs(x)**3, damper: {coordinate: x, coefficient: 1}", Word.ASYMPTOTIC),
+        ("potential: abs(x)**3, generalized force: {x: abs(x)*x_dot}", Word.UNDECIDED),
+    ],
+)
+def test_a_potential_with_another_first_term_on_either_side(loads: str, wanted: Word) -> None:
+    text = "mbsym: 1\nname: kink\nbodies:\n  - {name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}\n"
+    assert word(f"{text}loads: [{loads}]\nmotion: {{x: 0}}\n") is wanted
