@@ -9,9 +9,10 @@ Stability of Motion, section 34; H. Rubin, P. Ungar, Comm. Pure Appl. Math. 10 (
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import combinations
 from math import prod
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,7 @@ from mbsym.algebra.roots import counted
 from mbsym.analysis.higher import momenta_at_rest
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.motion import relations, turning, unperturbed_with
+from mbsym.mechanics.variables import ring_environment
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest
 from mbsym.problems.stability.linear_form import state_matrix
@@ -41,23 +43,50 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
 
 
-def by_energy_of_more(system: System, judged: Callable[[System], Verdict]) -> Verdict | None:
+def by_energy_of_more(
+    analysis: Analysis, judged: Callable[[System], tuple[Analysis, Verdict]], conserved: bool
+) -> Verdict | None:
     """The verdict on a rest by its energy where constraints on velocities are left out; None where there are none.
 
-    Rows J q' = 0 do no work: an energy that does not grow without them does not grow with them.  ``judged`` gives the
-    verdict on the same rest of another system.
+    Rows J q' = 0 do no work: an energy that does not grow without them does not grow with them.  What may drift without
+    them has to be free to do so with them, too, and not to be stopped: the energy is ``conserved``.  ``judged`` gives
+    the analysis of another system, and its verdict.
     """
+    system = analysis.system
     holonomic = tuple(filter(is_holonomic, system.constraints))
     if len(holonomic) == len(system.constraints):
         return None
-    verdict = judged(replace(system, constraints=holonomic, dependent=()))
+    there, verdict = judged(replace(system, constraints=holonomic, dependent=()))
     names = verdict.laid.get(Ground.ENERGY, (CHETAEV,))
-    if CHETAEV in names or (Flaw.CYCLIC in verdict.flawed and system.prescribed):  # constraints change momenta
+    if CHETAEV in names:
         return None
     reasons = Reason(Because.FEWER_CONSTRAINTS), Reason(Because.DRIFT)
-    if Flaw.CYCLIC in verdict.flawed:
-        return Verdict(Word.STABLE_BUT_CYCLIC, (LAGRANGE,), reasons)
-    return Verdict(Word.STABLE, (LAGRANGE,), reasons[:1])
+    if Flaw.CYCLIC not in verdict.flawed:
+        return Verdict(Word.STABLE, (LAGRANGE,), reasons[:1])
+    if system.prescribed or not conserved or not (Ground.IDLE in verdict.laid or _drifts(analysis, there)):
+        return None
+    return Verdict(Word.STABLE_BUT_CYCLIC, (LAGRANGE,), reasons)
+
+
+def _drifts(analysis: Analysis, there: Analysis) -> bool:
+    """Whether constraints allow one of the symmetric displacements D of a rest: rank(J D^T) < rank(D)."""
+    ring = there.ring
+    place = unperturbed_with(there.scene, relations(there.scene))
+    carry = Carrier(analysis.ring, ring, ring_environment(there.system, ring))
+
+    def at(x: Polynomial) -> Polynomial:
+        return ring.reduce(ring.substitute(x, place))
+
+    fields = [list(map(at, one)) for one in there.balance.symmetries(there.system.coordinates).directions]
+    rows = [[at(carry(x)) for x in row] for row in analysis.constraints.jacobian.polynomials]
+    held = [[ring.dot(row, one) for one in fields] for row in rows]
+
+    def deficient(table: Sequence[Sequence[Polynomial]]) -> bool | None:
+        chosen = combinations(table, len(fields))
+        zeros = [ring.is_zero(ring.reduce(determinant(ring, [list(row) for row in some]))) for some in chosen]
+        return None if None in zeros else all(zeros)
+
+    return bool(fields) and deficient(list(zip(*fields, strict=True))) is False and deficient(held) is True
 
 
 def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool) -> Verdict | None:

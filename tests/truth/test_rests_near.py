@@ -82,6 +82,22 @@ def test_what_is_said_of_a_skate_for_all_parameters(potential: str, wanted: Word
     assert found.numerical is None or found.numerical.word is wanted
 
 
+def test_values_say_more_than_what_holds_for_all_parameters() -> None:
+    text = SKATE.replace("V,", f"{HELD},").replace("Y", "0").replace("D}", "1}")
+    text = text.replace("k: real, c: real, d: real", "k: positive, c: positive, d: nonnegative")
+    found = mbsym.loads(text, (4, 5, 6)).stability
+    assert found.numerical is not None
+    assert (found.verdict.word, found.numerical.word) == (Word.STABLE, Word.ASYMPTOTIC_BUT_STEADY)
+
+
+@pytest.mark.parametrize("more", ["", ", velocity: th_dot = 0", ", velocity: th_dot = x_dot"])
+def test_what_constraints_hold_does_not_drift(more: str) -> None:
+    """Without them th drifts in the well; th' = 0 holds it, and so does th' = x', for th moves with x then."""
+    text = SKATE.replace("V,", f"{WELL},").replace("Y", "0").replace("D}", "0}")
+    found = word(text.replace("cos(th) = 0]", f"cos(th) = 0{more}]"))
+    assert found is Word.STABLE_BUT_CYCLIC if not more else found in (Word.STABLE, Word.CRITICAL, Word.UNDECIDED)
+
+
 VALLEY = """
 mbsym: 1
 name: valley
