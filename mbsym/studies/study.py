@@ -354,8 +354,11 @@ _LACKING = {
 }
 
 
-def missing(shown: Sequence[str], what: str = "value") -> Unfit:
-    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
+def missing(shown: Sequence[str], what: str = "value", led: bool = False) -> Unfit:
+    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``.
+
+    ``led``: positions are led to constraints, so that rough ones will do.
+    """
     names = [name.split(" ")[0] for name in shown]
     positions = [name for name, shown_name in zip(names, shown, strict=True) if " " in shown_name]
     example = " ".join(f"--set {name}=1" for name in names[:3]) + (" ..." if len(names) > 3 else "")
@@ -366,6 +369,8 @@ def missing(shown: Sequence[str], what: str = "value") -> Unfit:
     if positions:
         places.append(f"initial: {{{positions[0]}: 1, ...}}")
     hint = Message("[[example]], or in the file  [[places]]", example=example, places=",  ".join(places))
+    if led and positions:
+        hint = Message("[[hint]]; a position near the one that is meant will do: constraints lead it there", hint=hint)
     suffix = " (its initial position)"
     listed = joined(
         (Message("[[name]] (its initial position)", name=x.split(" ")[0]) if x.endswith(suffix) else x for x in shown),
