@@ -296,12 +296,16 @@ def first_order_of(analysis: Analysis) -> FirstOrder:
         why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
         raise Unavailable("first order", why)
     equations = cast("SpeedEquations", analysis.equations)
-    reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
+    reduced = analysis.reduced if analysis.system.constraints else None
     return first_order.first_order(analysis.form, equations, analysis.equilibrium, reduced)
 
 
 def told_of(analysis: Analysis) -> ToldSystem:
     """The equations through named intermediates."""
+    if analysis.system.speeds:
+        reason = "not derived: speeds and unit vectors are not taken into account here yet"
+        hint = "without 'speeds' and 'orientation' it is derived in generalised velocities"
+        raise Unavailable("told", NoResult(reason, hint, "speeds", "speeds"))
     return told_system(analysis.system, analysis.ring, analysis.terms)
 
 

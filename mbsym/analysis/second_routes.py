@@ -171,7 +171,7 @@ def _first_order(analysis: Analysis) -> Check | None:
 
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)
-    reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
+    reduced = analysis.reduced if analysis.system.constraints else None
     return first_order.check(analysis.form, closed, first_order_form, linear, analysis.equilibrium, reduced)
 
 
