@@ -331,13 +331,8 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
     Raises Failure where formulas outgrow a limit; the reason names then what is conserved nevertheless, if the
     straight-line program from which that is read has passed its check.
     """
-    if analysis.system.constraints:
+    if analysis.system.constraints or analysis.system.speeds:
         return constrained.integrals_of(analysis)
-    if analysis.system.speeds:
-        from mbsym.problems import in_speeds
-
-        equations = cast("SpeedEquations", analysis.equations)
-        return in_speeds.integrals(analysis.form, analysis.scene, analysis.energy, equations)
     try:
         return integrals.integrals(analysis.scene, analysis.energy, analysis.equations, analysis.programs)
     except Failure as failure:
