@@ -79,7 +79,11 @@ OF_MOTIONS = Knows.CONSTRAINTS | Knows.IN_COORDINATES | Knows.MATRICES
 
 #: The checks of what is told in coordinates, and the stage that each is about.
 CHECKED_IN_COORDINATES = {"equilibrium": "equilibrium", "linearisation": "linearisation"}
-CHECKED_IN_COORDINATES |= {"perturbed motion": "linearisation", "stabilisation": "stabilisation", **forms.CHECKED}
+CHECKED_IN_COORDINATES |= {
+    "perturbed motion": "linearisation",
+    "stabilisation": "stabilisation",
+    forms.REDUCED: "routh",
+}
 
 
 class Problem(Derived["Analysis", T]):
@@ -344,10 +348,12 @@ class Analysis(Stages):
 
     # --- problem 3 in other forms, for whoever asks ---
 
-    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,), knows=Knows.IN_COORDINATES)
-    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,), knows=Knows.IN_COORDINATES)
+    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,), knows=OF_EQUATIONS)
+    routh: Derived[Analysis, Routh] = Derived(
+        forms.routh, (forms.REDUCED,), knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES
+    )
     brackets: Derived[Analysis, Brackets | None] = Derived(
-        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True, knows=Knows.IN_COORDINATES
+        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True, knows=OF_EQUATIONS
     )
 
     # --- at numbers ---
