@@ -80,7 +80,7 @@ CHECKED_IN_COORDINATES = {
     "stabilisation": "stabilisation",
     "normal forms": "normal_forms",
     constrained.REACTIONS: "reactions",
-    **forms.CHECKED,
+    forms.REDUCED: "routh",
 }
 
 
@@ -330,10 +330,10 @@ class Analysis(Stages):
 
     # --- problem 3 in other forms, for whoever asks ---
 
-    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,), knows=Knows.COORDINATES)
-    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,), knows=Knows.COORDINATES)
+    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,))
+    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,), knows=Knows.CONSTRAINTS)
     brackets: Derived[Analysis, Brackets | None] = Derived(
-        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True, knows=Knows.COORDINATES
+        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True
     )
 
     # --- at numbers ---

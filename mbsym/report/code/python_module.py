@@ -73,8 +73,8 @@ TIED = frozenset({
 
 #: What a module that has Hamilton's or Routh's form calls something besides.
 IN_MOMENTA = frozenset({
-    "MOMENTA", "canonical_state", "hamiltonian", "canonical_rhs", "constants", "LEFT", "IGNORED", "CONSTANTS",
-    "reduced_state", "reduced_rhs", "reduced_potential", "ignored_rates", "places", "s",
+    "MOMENTA", "CANONICAL_POSITIONS", "canonical_state", "hamiltonian", "canonical_rhs", "constants", "LEFT", "IGNORED",
+    "CONSTANTS", "reduced_state", "reduced_rhs", "reduced_potential", "ignored_rates", "places", "s",
 })  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
