@@ -16,9 +16,10 @@ rates beside its state:
 
 Of what is at 0 and rests sizes are those that the same kinetic energy gives it: D_j sqrt(M_jj) and V_j sqrt(M_jj) are
 the largest of the others, and S_i = max A_ij D_j.  F_j, v_j and S_i/A_ij that have, times sqrt(M_jj), less than 1e-12
-of the largest are roundings and count as 0.  A column y of derivatives of the state, in which single components may be
-roundings, is measured as a whole: y_i has the size S_i max_k |y_k|/S_k, and while all of y is 0 that with y_k' times
-the shortest tau for y_k.  What begins from rest at 0 by a push has the times that the slopes of the rates tell there.
+of the largest are roundings and count as 0, and so are A_ij of an angle beside those of others by the same v_j.  A
+column y of derivatives of the state, in which single components may be roundings, is measured as a whole: y_i has the
+size S_i max_k |y_k|/S_k, and while all of y is 0 that with y_k' times the shortest tau for y_k.  What begins from rest
+at 0 by a push has the times that the slopes of the rates tell there.
 Where nothing tells a time or a size these are 1: all rests then, or the push is constant.
 """
 
@@ -191,6 +192,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     push = np.where(rate > 0, rate, 1.0)
     pushed = _beside(rates, begin, still, moving, push.astype(states.dtype))
     ways = _finite(pushed - rates(begin, still)[:, None])[placed] / push  # A_ij, shape (positions, velocities, m)
+    ways = _ways_above_noise(ways, kinds.angles[placed])
     bends = np.max(ways * rate, axis=1, initial=0.0)
     arcs = _arcs(kinds, placed, sizes[placed], _finite(base)[placed], largest[placed], bends)
     sizes[placed] = _sizes_above_noise(np.maximum(sizes[placed], LEAST * arcs), ways, weights)
@@ -257,6 +259,12 @@ def _above_noise(values: Any, weights: Any) -> Any:
     """The values (n, m), 0 for those that are roundings: tiny beside the others when all are weighed by masses."""
     weighed = values * weights
     return np.where(weighed < NOISE * np.max(weighed, axis=0, initial=0.0), 0.0, values)
+
+
+def _ways_above_noise(ways: Any, angles: Any) -> Any:
+    """A_ij, 0 for those of angles and unit vectors that are roundings: tiny beside others by the same v_j."""
+    largest = np.max(ways[angles], axis=0, initial=0.0)
+    return np.where(angles[:, None, None] & (ways < NOISE * largest), 0.0, ways)
 
 
 def _sizes_above_noise(sizes: Any, ways: Any, weights: Any) -> Any:
