@@ -6,16 +6,15 @@ has equations that are polynomial in positions and velocities:
     D x' = N(s, z, eps),      z = h_0(s) + h_1(s) eps + ... + h_n(s) eps^n,      s' = f_0(s) + f_1(s) eps + ...
 
 Variables z whose derivatives grow without bound as eps tends to 0, and those that must be known with them, are fast.
-The lowest order is solved by elimination (``slow``); comparing coefficients of eps in the equations of invariance gives
-h exactly (``slow``); h, cut off, is put into the field at a random rational state, where what is left must be of order
-n + 1 or higher (``checks``).  About a steady state the characteristic polynomial falls apart into that of the flow on
-the manifold and that of the fast variables, whose Hurwitz minors decide by their first coefficients for all
-sufficiently small eps > 0 (``slow``).  Reports expand to order 2, or 3 where order 2 does not decide; mbsym expand to
-any order.
+The lowest order is solved by elimination; comparing coefficients of eps in the equations of invariance gives h exactly;
+h, cut off, is put into the field at a random rational state, where what is left must be of order n + 1 or higher.
+About a steady state the characteristic polynomial falls apart into that of the flow on the manifold and that of the
+fast variables, whose Hurwitz minors decide by their first coefficients for all sufficiently small eps > 0.  Reports
+expand to order 2, or 3 where order 2 does not decide; mbsym expand to any order.
 
 A description with a prescribed phase whose rate is a parameter: the effective potential of what the phase shakes or
-drives (``averaging``), as Kapitza's and a Paul trap's, with the orders of eps that are assumed, and problem 6
-with it.  It is withdrawn where the measurement contradicts it.  A description with neither has nothing to expand.
+drives, as Kapitza's and a Paul trap's, with the orders of eps that are assumed, and problem 6 with it.  It is withdrawn
+where the measurement contradicts it.  A description with neither has nothing to expand.
 
 Relations between parameters are put in first: what follows from a scaled parameter is scaled with it, and a small
 parameter that follows from others is refused.  Where all numbers are given the error is measured against a simulation
