@@ -4,10 +4,9 @@
 
     f_i = dT/dq_i + dU/dq_i + Q_i - sum_j q'_j d(dT/dq'_i)/dq_j - sum_x rate_x d(dT/dq'_i)/dx - d(dT/dq'_i)/dt
 
-With constraints (``mbsym.problems.constraints``) these are the equations of the open tree, and constraint forces join
-them:  M q'' = f + J^T lambda,  J q'' + gamma = 0;  without multipliers  Y^T M Y u' = Y^T (f - M a0).
-
-where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.
+where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.  With
+constraints (``mbsym.problems.constraints``) these are the equations of the open tree, and constraint forces join them:
+M q'' = f + J^T lambda,  J q'' + gamma = 0;  without multipliers  Y^T M Y u' = Y^T (f - M a0).
 
 Other forms (``mbsym run --form routh,hamilton``; ``canonical``):
 

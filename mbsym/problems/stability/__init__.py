@@ -25,7 +25,7 @@ enclosures).  A theorem is named where all its hypotheses are shown:
 
 * Lagrange-Dirichlet (G = 0), Routh: M > 0, K > 0, N = 0, D >= 0, and the energy of the nonlinear system does not grow;
 * Kelvin-Chetaev: N = 0, D > 0, and K > 0 or det K != 0; or D = N = 0 and det K < 0;
-* Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for the roots of turned steady spins;
+* Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for those of a family of steady motions;
 * theory of linear equations: the equations of motion are exactly linear (M constant, f of first degree in q and q',
   proved in the ring; whatever is given by its matrices): no root to the right and those on the imaginary axis
   semisimple: stable; a Jordan block there: unstable, like a power of t.  Then no nonlinear system is left open.  A

@@ -416,7 +416,10 @@ def _continued(request: Run, path: Path, system: System, wrong: Reasons) -> Run:
     try:
         earlier = read_earlier(path, system)
     except UnfitRun as error:
-        wrong.complain("--continue", "unfit-run", error.reason, "take the simulation.json of a run of this FILE")
+        hint = "take the simulation.json of a run of this FILE"
+        if system.variables:
+            hint = "take the simulation.json of a run of this FILE with --variables coordinates, and go on with this"
+        wrong.complain("--continue", "unfit-run", error.reason, hint)
         return request
     if 0 < request.time <= earlier.time:
         there = f"{earlier.time:.9g}"
