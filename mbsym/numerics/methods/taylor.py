@@ -274,7 +274,8 @@ class TaylorRun(Stepping):
 
         goal = self._dtype(ends[0] + FAR * (self._unit + abs(ends[0])))
         outcome, shortest, *_ = taylor.propagate_until(goal, callback=kept, write_tc=True)
-        if outcome != self._heyoka.taylor_outcome.cb_stop or not shortest > self._least * max(self._unit, abs(ends[-1])):
+        least = self._least * max(self._unit, abs(ends[-1]))
+        if outcome != self._heyoka.taylor_outcome.cb_stop or not shortest > least:
             taylor.dtime, taylor.state[:] = now, before  # once more step by step, to see where it goes wrong
             return super().first(at)
         work.steps += len(ends) - 1
