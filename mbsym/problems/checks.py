@@ -258,15 +258,15 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         recursion = residuals(Scene(truth.system, state.numbers, state.values, truth.ring))
-        nodes = [node for row in programs.mass_matrix for node in row] + [*programs.forcing, programs.energy]
-        values = programs.program.evaluate(nodes, state.values, state.numbers)
+        masses = truth.masses(oracle, programs)
+        *forcing, energy = programs.program.evaluate([*programs.forcing, programs.energy], state.values, state.numbers)
         needed = oracle.residuals
         n = len(names)
-        compared: list[Pair] = [(Message("energy"), values[-1], oracle.energy_of_motion - oracle.force_function)]
+        compared: list[Pair] = [(Message("energy"), energy, oracle.energy_of_motion - oracle.force_function)]
         for i, name in enumerate(names):
-            total = -values[n * n + i]
+            total = -forcing[i]
             for j, other in enumerate(names):
-                total = total + values[i * n + j] * state.values[acceleration_name(other)]
+                total = total + masses[i * n + j] * state.values[acceleration_name(other)]
             compared.append((Message("equation [[name]]", name=name), total, needed[name]))
             compared.append(
                 (Message("equation [[name]] of the general recursion", name=name), recursion[name], needed[name])
@@ -281,11 +281,10 @@ def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
     """det M is not zero: every coordinate, and every combination of them, carries inertia."""
     names = truth.system.coordinates
     n = len(names)
-    nodes = [node for row in programs.mass_matrix for node in row]
 
     def regular(oracle: Oracle) -> bool | None:
         """None where enclosures are too wide to tell."""
-        values = programs.program.evaluate(nodes, oracle.state.values, oracle.state.numbers)
+        values = truth.masses(oracle, programs)
         if any(isinstance(value, arb) for value in values):
             return None if arb_mat(n, n, [arb(value) for value in values]).det().contains(0) else True
         return bool(fmpq_mat(n, n, values).rank() == n)
