@@ -198,7 +198,7 @@ def equilibrium_of(analysis: Analysis) -> Equilibrium:
         return given.at_zero()
     residuals = [x.polynomial for x in analysis.residuals]
     on_motion = bool(analysis.system.constraints)
-    singular = () if on_motion else equilibrium.singular_displacements(analysis.expanded)
+    singular = () if on_motion else equilibrium.singular_displacements(analysis.expanded, lambda: analysis.expanded)
     residuals += approximation.beside(analysis, singular)
     return equilibrium.equilibrium(analysis.parameters_scene, residuals, analysis.signs, on_motion, singular)
 

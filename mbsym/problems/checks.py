@@ -276,7 +276,7 @@ def check_program(truth: Oracles, programs: Programs, form: SpeedForm | None = N
         for name in names:
             label = Message("equation [[name]] of the general recursion", name=name)
             compared.append((label, recursion[name], oracle.residuals[name]))
-        return [*compared, *_coded(oracle, programs, speeds, {})]
+        return [*compared, *_coded(truth, oracle, programs, speeds, {})]
 
     states = 1 if len(names) * len(truth.system.bodies) > MOST_DISPLACED else STATES
     routes = ("Newton-Euler recursion in body axes", D_ALEMBERT)
@@ -288,7 +288,7 @@ def check_program(truth: Oracles, programs: Programs, form: SpeedForm | None = N
     code, own = speed_program(form), {u.name: u.rate_name for u in form.speeds}
     rates = dict(zip((x.name for x in form.positions), code.rates, strict=True))
     routes = ("Kane in body axes, straight-line", D_ALEMBERT)
-    in_speeds = compare(truth, "straight-line program", routes, lambda oracle: _coded(oracle, code, own, rates))
+    in_speeds = compare(truth, "straight-line program", routes, lambda oracle: _coded(truth, oracle, code, own, rates))
     return in_speeds if in_speeds.failed else checked
 
 
@@ -306,15 +306,18 @@ def _speeds(system: System) -> dict[str, str]:
 
 
 def _coded(
-    oracle: Oracle, code: Programs | SpeedProgram, speeds: Mapping[str, str], rates: Mapping[str, Node]
+    truth: Oracles,
+    oracle: Oracle,
+    code: Programs | SpeedProgram,
+    speeds: Mapping[str, str],
+    rates: Mapping[str, Node],
 ) -> list[Pair]:
     """M, f and s' of a program, compared."""
-    n, state = len(speeds), oracle.state
-    nodes = [*(x for row in code.mass_matrix for x in row), *code.forcing, *rates.values()]
-    values = code.program.evaluate(nodes, state.values, state.numbers)
-    mass = {u: values[r * n : (r + 1) * n] for r, u in enumerate(speeds)}
-    errors = _errors(oracle, speeds, mass, dict(zip(speeds, values[n * n : n * n + n], strict=True)))
-    return _against(oracle, speeds, errors, dict(zip(rates, values[n * n + n :], strict=True)))
+    n, masses = len(speeds), truth.masses(oracle, code)
+    values = code.program.evaluate([*code.forcing, *rates.values()], oracle.state.values, oracle.state.numbers)
+    mass = {u: masses[r * n : (r + 1) * n] for r, u in enumerate(speeds)}
+    errors = _errors(oracle, speeds, mass, dict(zip(speeds, values[:n], strict=True)))
+    return _against(oracle, speeds, errors, dict(zip(rates, values[n:], strict=True)))
 
 
 def _errors(
@@ -347,11 +350,10 @@ def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
     """det M is not zero: every coordinate, and every combination of them, carries inertia."""
     names = truth.system.coordinates
     n = len(names)
-    nodes = [node for row in programs.mass_matrix for node in row]
 
     def regular(oracle: Oracle) -> bool | None:
         """None where enclosures are too wide to tell."""
-        values = programs.program.evaluate(nodes, oracle.state.values, oracle.state.numbers)
+        values = truth.masses(oracle, programs)
         if any(isinstance(value, arb) for value in values):
             return None if arb_mat(n, n, [arb(value) for value in values]).det().contains(0) else True
         return bool(fmpq_mat(n, n, values).rank() == n)
