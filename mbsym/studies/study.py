@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from mbsym.report.whole_run import Beside
 
 
+T = TypeVar("T")
+
+
 class Exit(IntEnum):
     """Exit codes of commands: everything held; a result is missing or failed its check; the input is wrong; what was
     done ended early; the user stopped it (as shells count the signal)."""
@@ -78,6 +81,18 @@ def unremembered(
     return measure(), False
 
 
+#: What is said of an answer that an earlier command found.
+BEFORE = "measured by an earlier command, seconds too; --anew measures again"
+
+
+def identity(scenario: Scenario) -> str:
+    """A text that two scenarios share only if they are the same motion of the same description."""
+    from mbsym.source.yaml_writer import meaning
+
+    numbers = {name: getattr(scenario, name) for name in scenario.__dataclass_fields__ if name != "system"}
+    return repr((meaning(scenario.system), numbers))
+
+
 @dataclass(frozen=True)
 class Screen:
     """Where a result is told: ``width`` columns, None in a file or pipe, or ``quiet``, nowhere.
@@ -120,6 +135,21 @@ class Asked:
     @property
     def language(self) -> str:
         return self.spoken or self.system.language
+
+    def measured(
+        self,
+        what: str,
+        scenario: Scenario,
+        how: object,
+        measure: Callable[[], T],
+        anew: bool,
+        sound: Callable[[T], bool] = lambda found: True,
+    ) -> tuple[T, bool]:
+        """``what`` is asked of a motion, in all ``how``: the answer, and whether an earlier command found it."""
+        if self.remember is unremembered:
+            return measure(), False
+        found: tuple[T, bool] = self.remember((what, identity(scenario), repr(how)), measure, sound, anew)
+        return found
 
     @property
     def motion(self) -> Scenario:
