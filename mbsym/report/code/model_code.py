@@ -33,6 +33,7 @@ from mbsym.mechanics.programs import (
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.problems.integrals import (
+    AXIAL,
     ENERGY,
     GYROSCOPIC,
     OF_A_PART,
@@ -256,7 +257,7 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
                 carry = Carrier(analysis.ring, code.program, dict(code.environment))
                 lagrangian[key] = carry(item.formula.polynomial)
     for item, key in zip(integrals, keys, strict=True):
-        if item.kind in (WITH_FORCES, OF_A_PART, GYROSCOPIC, WITH_IMPULSE):
+        if item.kind in (AXIAL, WITH_FORCES, OF_A_PART, GYROSCOPIC, WITH_IMPULSE):
             carry = Carrier(analysis.ring, code.program, dict(code.environment))
             lagrangian[key] = carry(item.formula.polynomial)
     if all(key in lagrangian for key in keys):

@@ -252,6 +252,7 @@ class Integral(Part, frozen=True):
             "momentum with the impulse of forces",
             "linear momentum",
             "angular momentum",
+            "angular momentum about an axis of symmetry",
             "speed momentum",
             "unit vectors",
             "quaternion",
