@@ -13,10 +13,12 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.analysis.pipeline import Analysis
+from mbsym.analysis.resting import relative_equilibria
 from mbsym.analysis.soundness import complain
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.scenario import scenario
+from mbsym.problems.stability.words import Word
 from mbsym.simulation import Request, simulate
 from mbsym.source import read
 from mbsym_cli.main import main
@@ -63,6 +65,16 @@ def test_rows_that_follow_on_the_constraints_alone(size: Fraction, rough: Fracti
     roots = np.linalg.eigvals(numbers(analysis.state_space.A.polynomials))
     w = cmath.sqrt(10 / size)
     assert apart(roots, [1j * w, -1j * w]) < 1e-9
+
+
+@pytest.mark.parametrize("start", ["initial", "motion"])
+def test_both_rests_of_such_points_are_listed(start: str) -> None:
+    """Hanging and upright, whatever branch the rest of the points' positions lie on; one of the two starts is given."""
+    text = "\n".join(x for x in points(Fraction(1)).split("\n") if ":" in x and not x.startswith(start))
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
+    found = relative_equilibria(system, {})
+    assert {x.values[1].value: x.verdict.word for x in found.equilibria} == {-1.0: Word.STABLE, 1.0: Word.UNSTABLE}
 
 
 CASTOR = """\

@@ -201,6 +201,7 @@ class Because(Enum):
     ORDER_LOWER = auto()
     VARIES = auto()  # (with what)
     RANK_LOST = auto()  # (rank there, rank near it)
+    OTHER_BRANCH = auto()  # (rank there, lower rank elsewhere)
     NOT_THE_VALUE = auto()  # (of which parameter)
     MOTION_NOT_THERE = auto()  # (condition, value)
     MOTION_OPEN = auto()  # (condition)
