@@ -193,6 +193,9 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "coordinates are these angles here."
     ),
     Because.APART: "This is about [[1]]: equations of motion that know no other coordinates are judged by themselves.",
+    Because.WHILE_OTHERS_REST: (
+        "This is about motions of [[1]] while all other coordinates rest: these are motions, too."
+    ),
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",

@@ -176,6 +176,7 @@ class Because(Enum):
     DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
     OTHER_ANGLES = auto()  # (body, axes, angles)
     APART = auto()  # (coordinates)
+    WHILE_OTHERS_REST = auto()  # (coordinate)
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open
