@@ -6,16 +6,33 @@ The modules that know how are imported when a system has constraints; most have 
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.expressions.tree import (
+    ZERO,
+    Expression,
+    Name,
+    add,
+    divide,
+    is_number,
+    multiply,
+    negative,
+    number,
+    power,
+    sign_by_structure,
+    subtract,
+)
 from mbsym.model.constraints import Relation
-from mbsym.model.substitution import without_explicit_relations
+from mbsym.model.substitution import told_by, without_explicit_relations
+from mbsym.model.system import Prescribed
 from mbsym.problems import equations
 from mbsym.problems.checks import Check
 from mbsym.problems.equations import Equations
 
 if TYPE_CHECKING:
+    from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.model.system import System
@@ -45,6 +62,61 @@ def in_free_coordinates(system: System) -> System:
     ring = ring_of(free)
     tied = free.constraints and said_rows(Scene(free, ring, ring_environment(free, ring), ring))
     return free if tied else replace(free, constraints=())  # rows that say 0 = 0 followed from what is put in
+
+
+def with_runs_prescribed(system: System) -> System:
+    """The same motions where constraints  sum c_i q_i' = w != 0  of constant c, w are put in, each of one row.
+
+    One of these coordinates is  q_s = q_s(0) - sum c_i (q_i - q_i(0))/c_s + P,  P prescribed with the rate w/c_s.
+    """
+    from mbsym.mechanics.constraints.rows import joined_rows, said_rows
+    from mbsym.mechanics.kinematics import Scene
+    from mbsym.mechanics.motion import motion_values
+    from mbsym.mechanics.variables import ring_environment, ring_of
+
+    ring = ring_of(system)
+    signs = {parameter.name: parameter.sign for parameter in system.parameters}
+    rows = joined_rows(ring, said_rows(Scene(system, ring, ring_environment(system, ring), ring)))
+    still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
+    for k, constraint in enumerate(system.constraints):
+        own = [row for row in rows if row.name.constraint == k]
+        if len(own) != 1:
+            continue
+        slopes = [x for slope in own[0].partials if (x := _in_parameters(ring, slope)) is not None]
+        shift = _in_parameters(ring, ring.substitute(own[0].velocity, still))
+        if shift is None or is_number(shift, 0) or len(slopes) < len(system.coordinates):
+            continue
+        by_name = {name: x for name, x in zip(system.coordinates, slopes, strict=True) if not is_number(x, 0)}
+        name = next((x for x in reversed(by_name) if sign_by_structure(by_name[x], signs) is not None), None)
+        if name is None:
+            continue
+        start, run = motion_values(system), f"{name}{_RUN}"
+        value = add(start[name][0], Name(run))
+        for other, x in by_name.items():
+            if other != name:
+                moved = subtract(Name(other), start[other][0])
+                value = subtract(value, multiply(divide(x, by_name[name]), moved))
+        prescribed = (*system.prescribed, Prescribed(run, negative(divide(shift, by_name[name]))))
+        others = tuple(x for x in system.constraints if x is not constraint)
+        return with_runs_prescribed(told_by(replace(system, constraints=others, prescribed=prescribed), name, value))
+    return system
+
+
+#: How names of what is prescribed end that takes the place of a coordinate; no description can use these.
+_RUN = "_dot_run"
+
+
+def _in_parameters(ring: Ring, x: Polynomial) -> Expression | None:
+    """A polynomial in parameters as an expression; None of others."""
+    total: Expression = ZERO
+    for exponents, c in x.to_dict().items():
+        term: Expression = number(Fraction(int(c.p), int(c.q)))
+        for g, exponent in zip(ring.generators, exponents, strict=True):
+            if exponent and g.kind != "parameter":
+                return None
+            term = multiply(term, power(Name(g.name), number(int(exponent)))) if exponent else term
+        total = add(total, term)
+    return total
 
 
 def constraints_of(analysis: Analysis) -> Constraints:
@@ -117,10 +189,11 @@ def motion_check(analysis: Analysis) -> Check | None:
 
 
 def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
-    """What the constrained motion keeps."""
+    """What the motion keeps, with constraints or in speeds."""
     from mbsym.problems.constraints.integrals import integrals
 
-    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))
+    programs = programs_of(analysis) if analysis.system.constraints else None
+    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, programs)
 
 
 def integrals_check(analysis: Analysis, integrals: tuple[Integral, ...]) -> Check:

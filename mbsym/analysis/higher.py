@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, fmpq, fmpq_mat
+from flint import arb
 
 from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.point import Rationals
-from mbsym.algebra.roots import counted
 from mbsym.analysis.approximation import kept_by_velocities
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
@@ -22,15 +21,12 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.motion import relations, turning, unperturbed_with
 from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
-from mbsym.model.substitution import displaced
 from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
-from mbsym.problems.stability.linear_form import state_matrix
-from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting, concluded
-from mbsym.problems.stability.words import Because, Fact, HigherOrder, Reason, Word
+from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting
+from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial, Ring
@@ -115,59 +111,20 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         return None
 
 
-def by_family_of_rests(analysis: Analysis, values: Mapping[str, Any]) -> Verdict | None:
-    """Lyapunov-Malkin where all roots are to the left but the zero ones, as many as the rests near by have dimensions.
-
-    The rests are looked for where K + N has its null vectors: displacements along them are made coordinates, and the
-    others keep their values.  None where the values are not rational, or that is not shown.
-    """
-    system, ring = analysis.system, analysis.ring
-    if system.constraints or system.prescribed or system.speeds or ring.kinked or turning(analysis.scene):
-        return None
-    try:
-        numbers = {name: rationals.exact(value) for name, value in values.items() if isinstance(value, Fraction)}
-        carry = Carrier(analysis.parameters_scene.ring, Rationals({}, {}), numbers)
-        shown = analysis.linearisation
-        m, d, g, k, n = (
-            fmpq_mat([[fmpq(carry(x)) for x in row] for row in part.polynomials])
-            for part in (shown.M, shown.D, shown.G, shown.K, shown.N)
-        )
-        reduced, rank = (k + n).rref()
-        size = len(system.coordinates)
-        pivots = [next(j for j in range(size) if reduced[r, j] != 0) for r in range(rank)]
-        free = [j for j in range(size) if j not in pivots]
-        roots = counted(state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist()).charpoly())
-        if not free or roots.zero != len(free) or roots.left + roots.zero != roots.degree:
-            return None
-        for j in free:
-            along = {system.coordinates[i]: -rationals.fraction(reduced[r, j]) for r, i in enumerate(pivots)}
-            system = displaced(system, system.coordinates[j], along) if any(along.values()) else system
-        others = type(analysis)(system, (), analysis.terms, suggests=False)
-        ring, scene = others.ring, others.scene
-        exact = ((key, x) for key, x in values.items() if isinstance(x, Fraction) and ring.has("parameter", key))
-        given = {ring.index("parameter", key): ring.number(x) for key, x in exact}
-        fixed = {system.coordinates[i] for i in pivots} | {*system.velocities}
-        there = {
-            key: x
-            for key, x in unperturbed_with(scene, relations(scene) | given).items()
-            if key in given or fixed & {*ring.dependencies(ring.context.gen(key), (*system.coordinates, *fixed))}
-        }
-        acting = (ring.substitute(x.polynomial, there) for x in others.equations.forcing)
-        if not all(ring.is_zero(ring.reduce(x)) is True for x in acting):
-            return None
-    except (Failure, *NOT_THERE):
-        return None
-    return concluded({Fact.LEFT_BUT_STEADY})
-
-
 def _acting(analysis: Analysis) -> Iterator[Polynomial]:
-    """dU/dq, other forces, and the momenta dT/dq' at q' = 0, whose changes are gyroscopic forces."""
-    ring, names, energy = analysis.ring, analysis.system.coordinates, analysis.energy
-    still = {ring.index("velocity", name): ring.zero for name in names}
+    """dU/dq, other forces, and the momenta at q' = 0."""
+    force_function = analysis.energy.force_function.polynomial
     yield from generalized_forces(analysis.held_scene).values()
+    yield from (analysis.ring.derivative(force_function, name) for name in analysis.system.coordinates)
+    yield from momenta_at_rest(analysis)
+
+
+def momenta_at_rest(analysis: Analysis) -> Iterator[Polynomial]:
+    """dT/dq' at q' = 0, whose changes are gyroscopic forces."""
+    ring, names = analysis.ring, analysis.system.coordinates
+    still = {ring.index("velocity", name): ring.zero for name in names}
     for name in names:
-        yield ring.derivative(energy.force_function.polynomial, name)
-        yield ring.substitute(ring.velocity_derivative(energy.kinetic_energy.polynomial, name), still)
+        yield ring.substitute(ring.velocity_derivative(analysis.energy.kinetic_energy.polynomial, name), still)
 
 
 def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
@@ -446,8 +403,6 @@ def check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.normal_forms.result import symbols_agree
 
-    if analysis.system.speeds:
-        analysis = analysis.in_coordinates
     routes = ("normal form at the given values", "its formula in parameters, and problem 6")
     word, said = normal_form.first, normal_form.at_values.outcome.value
     if word is not None and ((word is Word.UNSTABLE and said in _STABLE) or (word.stable and said == "unstable")):

@@ -22,23 +22,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.rationals import fraction
-from mbsym.analysis import higher
-from mbsym.analysis.constrained import in_free_coordinates
+from mbsym.analysis import families, higher
+from mbsym.analysis.constrained import in_free_coordinates, with_runs_prescribed
 from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
+from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest, displaced
 from mbsym.model.system import System
 from mbsym.problems.equations import separate
 from mbsym.problems.stability.problem import ExactVerdicts, stability
-from mbsym.problems.stability.verdict import Flaw, Verdict, undecided, weakest
+from mbsym.problems.stability.verdict import Flaw, Verdict, off_the_leaf, undecided, weakest
 from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
@@ -122,22 +123,49 @@ class Judge:
         By step 2 only rational values are judged.
         """
         whole = self._together(verdict, values)
-        if whole.word.open and self.may_add(whole):
-            whole = higher.by_family_of_rests(self.analysis, values) or whole
-        if not (whole.word.open and self.may_add(whole) and self._parts):
-            return whole
+        for further in (self._by_what_is_near, self._apart, self._along_rests):
+            if not (whole.word.open and self.may_add(whole)):
+                break
+            whole = further(values) or whole
+        return whole
+
+    def _apart(self, values: Mapping[str, Any]) -> Verdict | None:
+        """What is said of parts of the equations that know no others; None where that is open, too."""
         try:
             judged = [(names, judge(values)) for names, judge in self._parts]
         except (Failure, *NOT_THERE):
-            return whole
+            return None
+        if not judged:
+            return None
         apart = weakest([part for _, part in judged])
         if apart.flawed >= {Flaw.CYCLIC, Flaw.STEADY}:  # what comes to another rest is not what is cyclic
             apart = Verdict(Word.STABLE_BUT_CYCLIC, apart.theorems)
         if apart.word.open:
-            return whole
+            return None
         alike = [(names, part) for names, part in judged if part.word is apart.word] or judged
         about = Reason(Because.APART, ("; ".join(", ".join(names) for names, _ in alike),))
         return replace(apart, reasons=tuple(sorted({*alike[0][1].reasons, about}, key=lambda reason: reason.rank)))
+
+    def _along_rests(self, values: Mapping[str, Any]) -> Verdict | None:
+        """Instability by slow motions along rests near by."""
+        return families.by_rests_near(self.analysis, values, decaying=False)
+
+    def _by_what_is_near(self, values: Mapping[str, Any]) -> Verdict | None:
+        """What rests near by say of one, or its energy without constraints on velocities."""
+        of = self.analysis
+        verdict = families.by_rests_near(of, values, decaying=True)
+        if verdict is not None or not of.system.constraints:
+            return verdict
+        try:
+            if families.at_rest(of) and of.balance.at(values).law.bounded:
+                return families.by_energy_of_more(of.system, lambda x: self._of_more(x)(values))
+        except (Failure, *NOT_THERE):  # without these constraints there may be no such rest
+            return None
+        return None
+
+    @cache  # noqa: B019
+    def _of_more(self, system: System) -> Judge:
+        return Judge(type(self.analysis)(system, (), self.analysis.terms, suggests=False))
 
     @cached_property
     def _parts(self) -> list[tuple[list[str], Judge]]:
@@ -187,13 +215,13 @@ class Judge:
 
     @cached_property
     def _in_others(self) -> Judge | None:
-        """The judge of this motion in the coordinates that explicit relations leave; None with other constraints.
+        """The judge of this motion in the coordinates that relations leave, explicit ones and even runs; else None.
 
         Without constraints in those of which some are displacements that change no equation, where those given are not.
         """
         of = self.analysis
         plain = self._displaced if self._displaces and not of.system.constraints else None
-        system = in_free_coordinates(of.system) if of.system.constraints else plain
+        system = with_runs_prescribed(in_free_coordinates(of.system)) if of.system.constraints else plain
         if system is None or system.constraints:
             return None
         return Judge(type(of)(system, (), of.terms, suggests=False), displaces=bool(of.system.constraints))
@@ -243,7 +271,8 @@ class Judge:
             for reason in verdict.reasons
             if reason.code is Because.DISPLACEMENTS and reason not in further.reasons
         )
-        return replace(further, reasons=tuple(sorted((*further.reasons, *reasons), key=lambda reason: reason.rank)))
+        told = replace(further, reasons=tuple(sorted((*further.reasons, *reasons), key=lambda reason: reason.rank)))
+        return told if all(map(is_holonomic, of.system.constraints)) else off_the_leaf(told)
 
     @cached_property
     def _of_higher_order(self) -> Any:

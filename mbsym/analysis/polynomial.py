@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -118,8 +118,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     inside = tuple(name for name in held if name not in whole.variables and f"sin({name})" not in whole.variables)
     if not declared:
         speeds: tuple[str, ...] = tuple(name for name in whole.variables if name not in exponentials)
-        told = {analysis.ring.generators[k].name for k in transfer.images}
-        aside = tuple(name for name in analysis.system.coordinates if name not in {*held, *told})
+        aside = _unfelt(analysis, transfer, held)
     else:
         vectors, speeds, aside = [*equations.vectors, *vectors], equations.speeds, _aside(form, equations.aside)
     numbers = {name: rationals.exact(x) for name, x in (values or {}).items() if name in whole.parameters}
@@ -161,6 +160,18 @@ def _product(field: PolynomialField) -> Any:
     for name in field.variables:
         total *= field.generator(name)
     return total
+
+
+def _unfelt(analysis: Analysis, transfer: Transfer, held: Collection[str]) -> tuple[str, ...]:
+    """The coordinates that are not ``held``, nor given by those that are."""
+    ring, names = analysis.ring, analysis.system.coordinates
+    positions = {ring.generators[k].name: x for k, x in transfer.images.items() if ring.generators[k].kind in _PLACES}
+    given = (name for name, x in positions.items() if {*held}.issuperset(ring.dependencies(x, names)))
+    return tuple(name for name in names if name not in {*held, *given})
+
+
+#: Kinds of generators that are positions or functions of one.
+_PLACES = ("coordinate", "sine", "cosine")
 
 
 def _aside(form: SpeedForm, aside: Sequence[str]) -> tuple[str, ...]:

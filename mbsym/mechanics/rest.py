@@ -208,7 +208,7 @@ def rest(system: System) -> Rest:
     at_rest = tuple(ring.substitute(x, dict(rates)) for x in forcing)
     rows: tuple[Row, ...] = ()
     if system.constraints:
-        from mbsym.mechanics.constraints.rows import said_rows  # most systems have none
+        from mbsym.mechanics.constraints.rows import joined_rows, said_rows  # most systems have none
 
-        rows = said_rows(scene)
+        rows = joined_rows(ring, said_rows(scene))
     return Rest(system, ring, scene, forcing, at_rest, rates, tuple(turning), rows)

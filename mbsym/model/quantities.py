@@ -23,8 +23,12 @@ from mbsym.model.units import (
     times,
 )
 
-#: Kinds of first integrals of the whole system.
-_MOMENTA = {"linear momentum": times(FORCE, TIME), "angular momentum": times(ENERGY, TIME)}
+#: Kinds of first integrals of the whole system, or of one body.
+_MOMENTA = {
+    "linear momentum": times(FORCE, TIME),
+    "angular momentum": times(ENERGY, TIME),
+    "angular momentum about an axis of symmetry": times(ENERGY, TIME),
+}
 
 
 def marked(label: str, unit: str | None) -> str:

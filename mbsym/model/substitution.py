@@ -216,12 +216,17 @@ def displaced(system: System, name: str, direction: Mapping[str, Fraction]) -> S
     return system
 
 
+def told_by(system: System, name: str, value: Expression) -> System:
+    """The motions of the other coordinates, with a value of theirs, of parameters and prescribed ones in its place."""
+    return _told_by(_motions_alone(system), name, value, [x for x in system.coordinates if x != name])
+
+
 def beside_rest(system: System, names: Sequence[str]) -> System:
     """The motions of the coordinates ``names`` alone, while the others rest where they begin."""
     system = _motions_alone(system)
     begun = {entry.coordinate: entry.value for entry in system.motion}
     for name in (coordinate for coordinate in system.coordinates if coordinate not in names):
-        system = _told_by(system, name, begun.get(name, ZERO), [x for x in system.coordinates if x != name])
+        system = told_by(system, name, begun.get(name, ZERO))
     return system
 
 
@@ -251,7 +256,8 @@ def _explicit(system: System) -> tuple[Relation, str, Expression] | None:
 
 def _told_by(system: System, name: str, value: Expression, free: Sequence[str]) -> System:
     """The system in the coordinates ``free``, with the value of another one, or of one of them, put in everywhere."""
-    rate = Derivation({free_name: Name(velocity_name(free_name)) for free_name in free})(value)
+    running = {item.name: item.rate for item in system.prescribed}
+    rate = Derivation(running | {free_name: Name(velocity_name(free_name)) for free_name in free})(value)
     images = {name: value, velocity_name(name): rate}
 
     def acting(load: Load) -> Load:

@@ -12,6 +12,7 @@ Found are
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
   mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted;
+* the angular momentum of a body that carries no other about an axis of symmetry in it, on which its mass centre lies;
 * of systems that consist of parts which do not know each other, the energy of each whose momenta are not all constant;
 * such a momentum less W(q), if the forces that change it are dW/dt: m x' - q B y of a magnetic field, m x' + c x of a
   damper.
@@ -75,6 +76,9 @@ OF_A_PART = "energy of a part"
 #: A momentum less W, where forces that do no work together change it by dW/dt; where forces do that do work.
 GYROSCOPIC, WITH_IMPULSE = "gyroscopic momentum", "momentum with the impulse of forces"
 
+#: C omega + h along an axis of symmetry of a body.
+AXIAL = "angular momentum about an axis of symmetry"
+
 #: Working precision of balls, in bits.
 PRECISION = 256
 #: States at which a candidate must be conserved exactly before it is reported.
@@ -130,6 +134,8 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     first_integrals += _momenta(
         scene, equations, conserved, [item.formula.polynomial for item in first_integrals if item not in energies]
     )
+    momenta = [item.formula.polynomial for item in first_integrals if item not in energies]
+    first_integrals += _axial_momenta(scene, equations, momenta)
     if not all(load.conservative for load in scene.system.loads):
         known = [item.formula.polynomial for item in first_integrals if item not in energies]
         first_integrals += _momenta_with_a_share(scene, equations, conserved, known, idle)
@@ -316,6 +322,38 @@ def _momenta(
     except Failure:
         pass  # what was found so far is right; the rest is not known
     return momenta
+
+
+def _axial_momenta(scene: Scene, equations: Equations, known: Sequence[Polynomial]) -> list[Integral]:
+    """Those that are proved, and no combinations of others."""
+    ring = scene.ring
+    found: list[Integral] = []
+    carrying = {body.attached_to for body in scene.system.bodies}
+    try:
+        for name, motion in scene.motions.items():
+            if motion.inertia is None or name in carrying:
+                continue
+            rows, centre = motion.inertia.rows, motion.mass_centre
+            for k, (i, j) in enumerate(((1, 2), (0, 2), (0, 1))):
+                apart = (rows[i][i] - rows[j][j], rows[i][j], rows[i][k], rows[j][k], centre[i], centre[j])
+                if not all(ring.is_zero(ring.reduce(x)) is True for x in apart):
+                    continue
+                momentum = ring.times(rows[k][k], motion.angular_velocity[k])
+                if motion.gyrostatic_moment is not None:
+                    momentum = momentum + motion.gyrostatic_moment[k]
+                momentum = ring.reduce(momentum)
+                others = [*known, *(item.formula.polynomial for item in found)]
+                if (
+                    varies(scene, momentum)
+                    and _is_new(ring, momentum, others)
+                    and is_proved(scene, equations, momentum)
+                ):
+                    title = Message("angular momentum of [[body]] about its axis [[axis]]", body=name, axis=k + 1)
+                    of = f"{name} {k + 1}"
+                    found.append(Integral(title, AXIAL, of, Formula(ring, momentum), Certainty.PROVED))
+    except Failure:
+        pass  # what was found so far is right; the rest is not known
+    return found
 
 
 def _momenta_with_a_share(

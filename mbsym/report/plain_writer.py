@@ -216,7 +216,8 @@ class Writer:
         text, before = "", None
         for x in value.parts:
             piece = self.inline(x).strip()
-            called = isinstance(before, content.Symbol) and isinstance(x, content.Listed) and x.brackets
+            listed = isinstance(x, content.Listed) and x.brackets and not isinstance(x.items[0], Formula)
+            called = listed and isinstance(before, content.Symbol)  # with formulas it would be a product
             factor = isinstance(before, content.Symbol) and not isinstance(x, str)
             close = self.readable and (factor or isinstance(before, str) or (x == "=" and len(text) <= _SHORT))
             behind = UNBROKEN if close else " "

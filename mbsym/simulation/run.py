@@ -14,7 +14,7 @@ from collections.abc import Callable, Collection
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints
@@ -73,14 +73,28 @@ PLANNING = "planning"
 #: Is told what is being done, for as long as it takes.
 Stage = Callable[[str], AbstractContextManager[object]]
 
+T = TypeVar("T")
+
+
+class Recall(Protocol):
+    """``measure()``, or what an earlier command measured: ``what``, of the same scenario, request and ``how``."""
+
+    def __call__(self, what: str, scenario: Scenario, request: Request, how: object, measure: Callable[[], T]) -> T: ...
+
+
+def anew(what: str, scenario: Scenario, request: Request, how: object, measure: Callable[[], T]) -> T:
+    """Nothing was measured before."""
+    return measure()
+
 
 def simulate(
     scenario: Scenario,
     request: Request,
     watch: Callable[[float], None] = lambda t: None,
     stage: Stage = lambda what: nullcontext(),
+    recall: Recall = anew,
 ) -> Simulation:
-    """Integrates a scenario.
+    """Integrates a scenario; its error is estimated, or recalled.
 
     What ends a run early (a blow-up, a singular mass matrix, a step limit, Ctrl-C) is part of the result.  Raises
     ValueError for a request that cannot be met (NoEvent: a condition without a value), Unusable where the method asked
@@ -122,7 +136,9 @@ def simulate(
         own = cost(dynamics, motion.method, request.arithmetic, motion.work)
         if motion.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
             limit = inf if request.estimate else max(LEAST, AT_MOST * own)
-            error = estimated(dynamics, motion, chosen.method, request.arithmetic, chosen.completed, limit)
+            how = dynamics, motion, chosen.method, request.arithmetic, chosen.completed, limit
+            known = recall if request.estimate else anew  # to look for a short one takes longer than to make it
+            error = known("estimate", original, request, None, lambda: estimated(*how))
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
         error = NoEstimate(Lacking.CONTRADICTED)
     certificate = None

@@ -9,6 +9,7 @@ import pytest
 import mbsym
 from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.pipeline import Analysis
+from mbsym.analysis.polynomial import setting
 from mbsym.formulas.formula import Formula
 from mbsym.problems.checks import EXACT, FAILED
 from mbsym.problems.constraints.checks import check_integrals
@@ -129,3 +130,16 @@ motion: {{y: {{rate: v}}, q: 0}}
     assert (found is not None) == judged
     if found is not None:
         assert found.verdict.word in ("stable", "stable in first approximation only")
+
+
+@pytest.mark.parametrize(
+    ("body", "constraint", "unfelt"),
+    [
+        # x' = u cos(phi), u' = 0: y phi' + x' is constant, but holds y, on which no equation depends
+        ("[x, y, phi]", "velocity: x_dot*sin(phi) = y_dot*cos(phi)", ("x", "y")),
+        ("[x, y, phi]", "relation: x + y = r", ("x", "y", "phi")),  # either gives the other, and neither is felt
+    ],
+)
+def test_positions_that_no_equation_knows_are_named(body: str, constraint: str, unfelt: tuple[str, ...]) -> None:
+    text = PLANE.replace("[x, y, z, phi]", body).replace("[x, y, z]", "[x, y, 0]")
+    assert setting(mbsym.loads(f"{text}constraints: [{constraint}]\n", (3, 7))).aside == unfelt

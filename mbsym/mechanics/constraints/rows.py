@@ -20,11 +20,14 @@ The rate of the last one takes the motion of the contact into account, which is 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
+from typing import Any
 
 from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.ring import Ring
 from mbsym.algebra.vectors import Vector
 from mbsym.expressions.message import Message
 from mbsym.expressions.place import Span
@@ -158,6 +161,37 @@ def _moved_by(scene: Scene, constraint: Constraint) -> set[str]:
 def said_rows(scene: Scene) -> tuple[Row, ...]:
     """The rows over the ring without those that say 0 = 0 whatever the motion."""
     return tuple(row for row in constraint_rows(scene) if not row.is_trivial(scene.algebra))
+
+
+def joined_rows(ring: Ring, rows: Sequence[Row]) -> tuple[Row, ...]:
+    """With sum c_k g_k / C in place of velocity rows  g_k = c_k g,  where  C = sum c_k^2  is a number other than 0.
+
+    g_1 = g_2 = ... = 0 says no more than g = 0 and, unlike each of them, no less anywhere: a wheel in a plane has the
+    rows -g sin(p) and g cos(p) along fixed axes.
+    """
+    joined: list[Row] = []
+    groups: dict[Any, list[tuple[Row, Any]]] = {}
+    for row in rows:
+        common: Any = reduce(lambda x, y: x.gcd(y), [x for x in (row.velocity, *row.partials) if x != 0])
+        alone = row.position is not None or common.is_constant()
+        g = row.velocity / common
+        common = common * g.leading_coefficient() if not alone else common
+        key = row.name if alone else (row.name.constraint, str(g / g.leading_coefficient()))
+        groups.setdefault(key, []).append((row, common))
+    for members in groups.values():
+        total = ring.reduce(sum((c * c for _, c in members), ring.zero))
+        if len(members) == 1 or not total.is_constant():
+            joined += [row for row, _ in members]
+            continue
+        scale = 1 / total.leading_coefficient()
+
+        def mixed(parts: Iterable[Any], of: list[tuple[Row, Any]] = members, scale: Any = scale) -> Any:
+            return ring.reduce(sum((c * x for (_, c), x in zip(of, parts, strict=True)), ring.zero) * scale)
+
+        velocity, acceleration = (mixed(getattr(row, x) for row, _ in members) for x in ("velocity", "acceleration"))
+        partials = tuple(mixed(parts) for parts in zip(*(row.partials for row, _ in members), strict=True))
+        joined.append(Row(members[0][0].name, None, velocity, acceleration, partials))
+    return tuple(joined)
 
 
 def kept_rows(rows: Sequence[Row]) -> tuple[tuple[int, int], ...]:

@@ -115,16 +115,17 @@ class _Points:
         return _Points(self.ring, self.programs, [self.states[k] for k in places])
 
     @cached_property
-    def _first(self) -> list[list[Any]]:
-        return self.jacobians()[0]
+    def _jacobians(self) -> list[list[list[Any]]]:
+        return self.jacobians()
 
     def combined(self, independent: Sequence[int], i: int) -> list[int]:
-        """Of which independent rows of J a dependent one is a combination at the first point."""
-        jacobian = self._first
-        m = len(independent)
-        table = [[*(jacobian[k][c] for k in independent), jacobian[i][c]] for c in range(len(jacobian[i]))]
-        done = eliminated(table, range(m))
-        return [independent[column] for row, column in done.pivots if is_certain(done.rows[row][m])]
+        """Of which independent rows of J a dependent one is a combination, at any of the points."""
+        m, held = len(independent), set[int]()
+        for jacobian in self._jacobians:
+            table = [[*(jacobian[k][c] for k in independent), jacobian[i][c]] for c in range(len(jacobian[i]))]
+            done = eliminated(table, range(m))
+            held |= {independent[column] for row, column in done.pivots if is_certain(done.rows[row][m])}
+        return [k for k in independent if k in held]
 
     def values(self, polynomials: Sequence[Polynomial]) -> list[list[Any]]:
         """Each formula at each point."""
@@ -170,7 +171,8 @@ class _Analysis:
         rank = max(elimination.rank for elimination in ranked)
         # Where it is lower a point is singular, or on another branch.
         points = points.at([k for k, elimination in enumerate(ranked) if elimination.rank == rank])
-        independent = [i for i, _ in next(elimination for elimination in ranked if elimination.rank == rank).pivots]
+        # A row that vanishes at a point by chance is not left out for a later one.
+        independent = min(sorted(i for i, _ in x.pivots) for x in ranked if x.rank == rank)
         self._check_velocities(points, independent)
         self._check_freedom(independent)
         jacobian = [row.partials for row in self.rows]

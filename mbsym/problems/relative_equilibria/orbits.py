@@ -238,7 +238,7 @@ def orbits(first: Rest, constraints: Constraints) -> Orbits | None:
             )
             for row in first.rows
         ],
-        constraints.independent,
+        [k for k, row in enumerate(first.rows) if row.name in {constraints.names[i] for i in constraints.independent}],
     )
     given = {names.index(entry.coordinate) for entry in first.system.motion}
     order = sorted((k for k in along if k not in given), key=lambda k: (names[k] not in constraints.dependent, -k))

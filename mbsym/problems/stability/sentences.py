@@ -121,6 +121,14 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "The (changed) potential energy is constant, and no gyroscopic forces act: every position is one of rest, and "
         "the smallest velocity leads away from it along a geodesic."
     ),
+    Because.ALONG_RESTS: (
+        "Rests near by are a manifold of dimension [[1]], across which the potential energy has a strict minimum: slow "
+        "motions follow its geodesics (Rubin and Ungar), and leave, however slow they are."
+    ),
+    Because.FEWER_CONSTRAINTS: (
+        "Without the constraints on velocities the energy keeps velocities, and coordinates that are not cyclic, near "
+        "the rest. They do no work: so it does with them."
+    ),
     Because.TERMS_OF_HIGHER_ORDER: (
         "The first approximation leaves the nonlinear system open; terms of higher order decide."
     ),

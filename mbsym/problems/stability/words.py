@@ -150,6 +150,8 @@ class Because(Enum):
     HIGHER_MINIMUM_AND_COMPLETE = auto()  # (order)
     NO_MINIMUM = auto()  # (order)
     NO_FORCES = auto()
+    ALONG_RESTS = auto()  # (dimensions)
+    FEWER_CONSTRAINTS = auto()
     TERMS_OF_HIGHER_ORDER = auto()
     # of what no theorem carries
     GYROSCOPIC_ONLY = auto()
@@ -288,6 +290,7 @@ class Fact(Enum):
     NO_OTHER_FORCES = "gyroscopic forces are not there, or V is a function of one coordinate alone"
     POTENTIAL_CONSTANT = "V is the same at every position"
     ENERGY_CONSERVED = "the energy of the nonlinear system is constant"
+    MINIMUM_ACROSS_RESTS = "V has a strict minimum across a manifold of rests"
     #: A combination of integrals of the nonlinear system is stationary, its second variation definite where they keep
     #: their values (``bundle``): shown of the whole system, never of a subsystem.
     INTEGRALS_DEFINITE = "a combination of integrals of the nonlinear system has a strict minimum"
@@ -397,6 +400,15 @@ THEOREMS = (
     ),
     # A small ball is left by every geodesic through it (Whitehead), at the constant rate sqrt(2 T).
     _theorem(GEODESICS, None, Because.NO_FORCES, Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED),
+    # Slow motions that begin along the rests stay near them, and tend to geodesics there as they are slower.
+    _theorem(
+        GEODESICS,
+        None,
+        Because.ALONG_RESTS,
+        Fact.MINIMUM_ACROSS_RESTS,
+        Fact.NOT_GYROSCOPIC,
+        Fact.ENERGY_CONSERVED,
+    ),
     _theorem(CHAPLYGIN, Ground.ENERGY, Because.FOLLOWS_ONE, Fact.ONE_POSITION, Fact.BOUNDED),
     _theorem(CHETAEV, Ground.ENERGY, Because.INTEGRALS, Fact.INTEGRALS_DEFINITE),
     _theorem(LINEAR, Ground.LINEAR, Because.LINEAR_BOUNDED, Fact.EXACTLY_LINEAR, Fact.BOUNDED),

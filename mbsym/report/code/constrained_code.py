@@ -21,7 +21,6 @@ from mbsym.analysis.stages import Unavailable
 from mbsym.mechanics.constraints.dependence import counted_anew
 from mbsym.mechanics.constraints.dynamics import Chosen, ConstrainedDynamics, constrained_dynamics
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
-from mbsym.mechanics.programs import Programs
 from mbsym.model.system import System
 from mbsym.report.code.functions import Function, Functions
 
@@ -142,16 +141,16 @@ def given_of(system: System) -> tuple[int, ...]:
     return tuple(map(int, (*positions, *velocities)))
 
 
-def tied_code(analysis: Analysis, writer: Functions) -> tuple[TiedCode | None, Programs | None, str]:
-    """The functions and the program of the open tree; or the reason why there are none."""
+def tied_code(analysis: Analysis, writer: Functions) -> TiedCode | None:
+    """The functions; None where there are none."""
     tied = tied_of(analysis)
     if isinstance(tied, str):
-        return None, None, tied
+        return None
     program, jacobian = tied.code.tree.program, tied.jacobian
     places = entries(program, jacobian)
     system = analysis.system
     fixed = given_of(system)
-    code = TiedCode(
+    return TiedCode(
         tied.labels,
         tied.positions,
         tied.rank,
@@ -164,7 +163,6 @@ def tied_code(analysis: Analysis, writer: Functions) -> tuple[TiedCode | None, P
         fixed,
         tuple(name for name, stays in zip((*system.coordinates, *system.velocities), fixed, strict=True) if stays),
     )
-    return code, tied.code.tree, ""
 
 
 def entries(program: Program, matrix: Sequence[Sequence[Node]]) -> tuple[tuple[int, int], ...]:

@@ -19,6 +19,7 @@ from mbsym.studies.described import Source, analysis_of, laws_of, public
 from mbsym.studies.request import (
     LEAST_ERROR,
     MOST_ERROR,
+    Anew,
     Errors,
     Flag,
     Formulas,
@@ -279,6 +280,7 @@ class Command(Request):
     bodies: Annotated[bool, Flag(None, "What each body does, in bodies.csv; the same as format bodies-csv.")] = False
     animate: Annotated[bool, Flag(None, "animation.html and animation.gif; the same as formats html,gif.")] = False
     verbose: Annotated[bool, Flag(None, "Tell how it was done, too: method, setting, work, what rests.", "-v")] = False
+    anew: Anew = False
 
     @property
     def formats(self) -> tuple[str, ...]:
@@ -442,6 +444,7 @@ def refusal(error: Exception, context: Asked, request: Command) -> Refusal | Non
 RARE = (
     "every", "step", "max_step", "arithmetic", "step_limit", "invariants", "estimate", "whole", "certify_seconds",
     "section", "axes", "variables", "gravity", "linear", "without", "members", "seed", "sampling", "path", "fixed",
+    "anew",
 )  # fmt: skip
 
 STUDY = Study(

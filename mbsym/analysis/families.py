@@ -1,0 +1,223 @@
+"""Rests that are judged by what is near them: a manifold of rests, or the energy of the system with fewer constraints.
+
+At rest the velocities that constraints leave obey  e(q) = Y^T f(q, 0) = 0.  Where r of these equations have independent
+gradients at a rest, and the others are combinations of them, the rests near by are a manifold of dimension n - r.
+
+Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), chapter V; I. G. Malkin, Theory of
+Stability of Motion, section 34; H. Rubin, P. Ungar, Comm. Pure Appl. Math. 10 (1957) 65-87.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpq, fmpq_mat
+
+from mbsym.algebra import rationals
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import irreducible_factors, occurring
+from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
+from mbsym.algebra.matrices import determinant, leading_determinants
+from mbsym.algebra.point import Rationals
+from mbsym.algebra.roots import counted
+from mbsym.analysis.higher import momenta_at_rest
+from mbsym.mechanics.loads.kinds import generalized_forces
+from mbsym.mechanics.motion import relations, turning, unperturbed_with
+from mbsym.model.constraints import is_holonomic
+from mbsym.problems.stability.linear_form import state_matrix
+from mbsym.problems.stability.verdict import Flaw, Verdict, concluded
+from mbsym.problems.stability.words import CHETAEV, LAGRANGE, Because, Fact, Ground, Reason, Word
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from mbsym.algebra.ring import Polynomial, Ring
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.model.system import System
+
+
+def by_energy_of_more(system: System, judged: Callable[[System], Verdict]) -> Verdict | None:
+    """The verdict on a rest by its energy where constraints on velocities are left out; None where there are none.
+
+    Rows J q' = 0 do no work: an energy that does not grow without them does not grow with them.  ``judged`` gives the
+    verdict on the same rest of another system.
+    """
+    holonomic = tuple(filter(is_holonomic, system.constraints))
+    if len(holonomic) == len(system.constraints):
+        return None
+    verdict = judged(replace(system, constraints=holonomic, dependent=()))
+    names = verdict.laid.get(Ground.ENERGY, (CHETAEV,))
+    if CHETAEV in names or (Flaw.CYCLIC in verdict.flawed and system.prescribed):  # constraints change momenta
+        return None
+    reasons = Reason(Because.FEWER_CONSTRAINTS), Reason(Because.DRIFT)
+    if Flaw.CYCLIC in verdict.flawed:
+        return Verdict(Word.STABLE_BUT_CYCLIC, (LAGRANGE,), reasons)
+    return Verdict(Word.STABLE, (LAGRANGE,), reasons[:1])
+
+
+def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool) -> Verdict | None:
+    """The verdict where the rests near by are a manifold; None where the values are not rational, or it is not shown.
+
+    ``decaying``, Lyapunov and Malkin: all roots are to the left but the zero ones, as many as it has dimensions.  Else,
+    Rubin and Ungar: the energy is conserved, without gyroscopic forces, and V has a strict minimum across it, not the
+    same one everywhere: what moves along it does not move along a symmetry.
+    """
+    system = analysis.system
+    if system.prescribed or system.speeds or analysis.ring.kinked or not at_rest(analysis):
+        return None
+    try:
+        rests = _rests(analysis, values)
+        if rests is None or not rests.dimension:
+            return None
+        numbers = {name: rationals.exact(value) for name, value in values.items()}
+        carry = Carrier(analysis.parameters_scene.ring, Rationals({}, {}), numbers)
+        shown = analysis.linearisation
+        m, d, g, k, n = (
+            fmpq_mat([[fmpq(carry(x)) for x in row] for row in part.polynomials])
+            for part in (shown.M, shown.D, shown.G, shown.K, shown.N)
+        )
+        if decaying:
+            roots = counted(state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist()).charpoly())
+            beside = len(system.coordinates) - m.nrows()  # coordinates of which only the velocities are dependent
+            left = roots.zero + beside == rests.dimension and roots.left + roots.zero == roots.degree
+            return concluded({Fact.LEFT_BUT_STEADY}) if left else None
+        conserved = not system.constraints and analysis.balance.at(values).conserves
+        across = n.rank() == 0 and _positive(k, len(rests.equations))
+        if conserved and across and not _gyroscopic(analysis) and _varies(analysis, rests):
+            facts = {Fact.MINIMUM_ACROSS_RESTS, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED}
+            return concluded(facts, Reason(Because.ALONG_RESTS, (rests.dimension,)))
+    except (Failure, *NOT_THERE):
+        return None
+    return None
+
+
+def at_rest(analysis: Analysis) -> bool:
+    """Whether nothing moves on the unperturbed motion."""
+    if not analysis.system.constraints:
+        return not turning(analysis.scene)
+    base = analysis.reduced.expansion.base
+    return not base.turning and all(x.is_zero() for x in base.rates)
+
+
+def _gyroscopic(analysis: Analysis) -> bool:
+    """Whether there may be forces that hang on velocities, but for those of T_2."""
+    ring, names = analysis.ring, analysis.system.coordinates
+    applied = generalized_forces(analysis.held_scene).values()
+    slopes = (ring.velocity_derivative(x, name) for x in applied for name in names)
+    return not all(map(ring.vanishes, (*momenta_at_rest(analysis), *slopes)))
+
+
+@dataclass(frozen=True)
+class _Rests:
+    """The rests near one: the zeros of ``equations``, whose gradients there are independent.
+
+    ``numbers`` and ``place`` are what parameters, and then coordinates, are at the rest, by their generators.
+    """
+
+    ring: Ring
+    names: tuple[str, ...]
+    numbers: Mapping[int, Polynomial]
+    place: Mapping[int, Polynomial]
+    equations: list[Polynomial] = field(default_factory=list)
+    slopes: list[list[fmpq]] = field(default_factory=list)
+
+    @property
+    def dimension(self) -> int:
+        return len(self.names) - len(self.equations)
+
+    def at(self, x: Polynomial) -> fmpq:
+        """x at the rest.  Raises NotRational where it is no rational number."""
+        value = self.ring.reduce(self.ring.substitute(x, dict(self.place)))
+        if not value.is_constant():
+            raise NotRational("a derivative has no exact value")
+        return value.leading_coefficient() if value else fmpq(0)
+
+    def takes(self, x: Polynomial) -> bool:
+        """Whether x is one of the equations now: its gradient is no combination of theirs."""
+        own = [self.at(self.ring.derivative(x, name)) for name in self.names]
+        if fmpq_mat([*self.slopes, own]).rank() == len(self.slopes):
+            return False
+        self.equations.append(x)
+        self.slopes.append(own)
+        return True
+
+    def vanishing_part(self, x: Polynomial) -> Polynomial:
+        """x without the factors that differ from 0 at the rest."""
+        factors = irreducible_factors(x)[1] if x else [(x, 1)]
+        return prod((factor**exponent for factor, exponent in factors if not self.at(factor)), start=self.ring.one)
+
+    def varies(self, x: Polynomial) -> bool:
+        """Whether x, which is 0 at the rest, is proved not to be 0 at all rests near by.
+
+        They are a plane of coordinates, or the zeros of one irreducible polynomial.
+        """
+        ring = self.ring
+        reduced, rank = fmpq_mat(self.slopes).rref()
+        fixed = {self.names[next(j for j in range(len(self.names)) if reduced[r, j] != 0)] for r in range(rank)}
+        others = [name for name in self.names if name not in fixed]
+        gens = ring.context.gens()
+        plane = {k: y for k, y in self.place.items() if k in self.numbers or not ring.dependencies(gens[k], others)}
+        if all(ring.vanishes(ring.substitute(equation, plane)) for equation in self.equations):
+            return ring.is_zero(ring.reduce(ring.substitute(x, plane))) is False
+        plain = {ring.generators[k].kind for k in occurring([x, *self.equations])} <= {"coordinate"}
+        return plain and rank == 1 and divmod(x, self.equations[0])[1] != 0
+
+
+def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
+    """The manifold of rests; None where it is not shown that there is one."""
+    ring, system, equations = analysis.ring, analysis.system, analysis.equations
+    forces = equations.forcing
+    if system.constraints:
+        if equations.embedded is None or analysis.constraints.position_rank or analysis.reduced.about.following:
+            return None
+        forces = equations.embedded.forcing
+    numbers = {
+        ring.index("parameter", name): ring.number(x)
+        for name, x in values.items()
+        if isinstance(x, Fraction) and ring.has("parameter", name)
+    }
+    place = unperturbed_with(analysis.scene, relations(analysis.scene) | numbers)
+    found = _Rests(ring, system.coordinates, numbers, place)
+    still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
+    parts = []
+    for force in forces:
+        top, below = ring.fraction(ring.reduce(ring.substitute(force.polynomial, still | numbers)))
+        if not all(found.at(factor) for factor, _ in below):
+            return None
+        parts.append(found.vanishing_part(top))
+    for x in [x for x in sorted(parts, key=len) if not found.takes(x)]:
+        for equation in found.equations:
+            x = divmod(x, equation)[1]
+        if x != 0:
+            return None
+    return found
+
+
+def _varies(analysis: Analysis, rests: _Rests) -> bool:
+    """Whether tr(M^-1 K) is not the same at all rests near by, as it would be were they alike."""
+    ring, names, numbers = rests.ring, rests.names, dict(rests.numbers)
+    mass = [[ring.substitute(x, numbers) for x in row] for row in analysis.equations.mass_matrix.polynomials]
+    still = numbers | {ring.index("velocity", name): ring.zero for name in names}
+    forces = [ring.substitute(x.polynomial, still) for x in analysis.equations.forcing]
+    whole = determinant(ring, mass)
+    trace = ring.zero
+    for k, name in enumerate(names):
+        column = [ring.derivative(f, name) for f in forces]
+        replaced = [[*row[:k], x, *row[k + 1 :]] for row, x in zip(mass, column, strict=True)]
+        trace = ring.reduce(trace + determinant(ring, replaced))
+    top, below = ring.fraction(ring.reduce(trace * rests.at(whole) - whole * rests.at(trace)))
+    return all(rests.at(factor) for factor, _ in below) and rests.varies(top)
+
+
+def _positive(k: fmpq_mat, rank: int) -> bool:
+    """Whether K is positive semidefinite of this rank: so on the columns of its pivots."""
+    reduced, found = k.rref()
+    if found != rank:
+        return False
+    pivots = [next(j for j in range(k.ncols()) if reduced[r, j] != 0) for r in range(rank)]
+    block = [[k[i, j] for j in pivots] for i in pivots]
+    return all(minor > 0 for minor in leading_determinants(fmpq_mat, block))
