@@ -297,6 +297,15 @@ def test_explain_knows_every_command_verdict_theorem_and_key() -> None:
     assert "did you mean Arnold-Moser" in mbsym("explain", "moser").stderr
 
 
+def test_a_theorem_is_explained_with_its_weakest_hypotheses() -> None:
+    """Lagrange and Dirichlet's holds with D >= 0, of which D = 0 is an instance; Malkin's alone is about a family."""
+    told = explanations("Lagrange-Dirichlet")
+    assert sum("K > 0" in text for text in told) == 1
+    assert not any("D = 0" in text for text in told)
+    assert all("family" in text for text in explanations("Lyapunov-Malkin"))
+    assert not any("family" in text for text in explanations("Kelvin-Chetaev"))
+
+
 def test_every_verdict_has_a_meaning_and_a_look() -> None:
     """A word without a look would be drawn as no verdict."""
     assert set(MEANINGS) == set(Word) == set(LOOKS) & set(Word)

@@ -203,8 +203,9 @@ class Command(Request):
     "falling" keep one direction of =, "mod 2*pi" takes an angle modulo a turn (never done unasked).  events.csv has
     every time of an --event that dense output shows; --stop ends the run; a --section is a table and a picture.
 
-    --input says what an input of the description is: a number, or a formula in t, coordinates, velocities, parameters
-    and tables.  Without it an input is held at its value on the unperturbed motion (0 unless motion: gives another).
+    --input says what an input of the description is: a number, or a formula in t, coordinates, velocities, speeds,
+    parameters and tables.  Without it an input is held at its value on the unperturbed motion (0 unless motion: gives
+    another).
 
     --accuracy 1e-6 chooses order of gravity, linear or nonlinear, parameters to drop, method, tolerance, arithmetic;
     prints one bound, and the command that repeats the run.  --method, --tolerance, --gravity, ... settle a part of it.

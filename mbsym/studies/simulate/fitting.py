@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from mbsym import simulation
 from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.safe import quoted
+from mbsym.expressions.tree import names
 from mbsym.model.constraints import listed as listed_constraints
 from mbsym.numerics.accuracy import Lacking, NoEstimate
 from mbsym.simulation import Request as Run
@@ -141,6 +143,8 @@ def settled(context: Asked, request: Command) -> Settled:
         _sensitive(request.sensitivity, scenario, wrong)
     _check_constrained(system, run_request, wrong)
     _check_states(seen, run_request, request.formats, wrong)
+    if scenario is not None and seen is not system:
+        _check_laws(scenario, wrong)
     if request.accuracy is None:
         return Settled(run_request, None, wrong)
     from mbsym.simulation.accurate import read_accuracy, settled_by  # few ask for an accuracy
@@ -368,6 +372,16 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
     elif any(body.orientation for body in system.bodies):
         text = "[[method]] does not keep quaternions and unit vectors at their lengths"
         wrong.complain("--method", "unsuitable-method", Message(text, method=request.method), these)
+
+
+def _check_laws(scenario: Scenario, wrong: Reasons) -> None:
+    """Complains of angles in laws of inputs that are no variables of a run, unit vectors or quaternions are."""
+    replaced = {name for body in scenario.system.bodies if body.orientation for name in body.own_angles}
+    for driven in scenario.inputs:
+        for name in sorted({without_velocity(name) for name in names(driven.law)} & replaced):
+            text = "the angle '[[name]]' in the law of [[input]] is no variable of this run"
+            message = Message(text, name=name, input=driven.name)
+            wrong.complain("--input", "variables", message, joined(("write it in speeds", worded(WAY_OUT)), "; "))
 
 
 def _sensitive(named: tuple[str, ...], scenario: Scenario, wrong: Reasons) -> None:
