@@ -55,7 +55,7 @@ def faults(scene: Scene) -> tuple[Fault, ...]:
     """The faults alone: what is said of a description before anything is derived from it."""
     try:
         with ctx.workprec(PRECISION):
-            _Analysis(scene).pivots()
+            _Analysis(scene).look_for_faults()
     except Unsound as reason:
         return reason.faults
     except Failure:  # nothing is known to be wrong
@@ -158,8 +158,14 @@ class _Analysis:
         self.programs = constrained_programs(self.system, self.ring, kept_rows(self.rows))
         self.manifold = Manifold(self.system, self.ring, self.programs)
 
-    def pivots(self) -> tuple[_Points, list[int], Pivots]:
-        """Points of the manifold, the independent rows, and how they are solved."""
+    def look_for_faults(self) -> None:
+        """Raises Unsound with those there are: how rows are solved matters where the description says it."""
+        points, independent = self.independent_rows()
+        if self.system.dependent:
+            self._chosen(independent, points)
+
+    def independent_rows(self) -> tuple[_Points, list[int]]:
+        """Points of the manifold, and rows that are independent there."""
         impossible = contradiction(self.ring, self.rows)
         if impossible:
             message = "these constraints contradict one another: no configuration keeps them all"
@@ -177,8 +183,7 @@ class _Analysis:
         independent = sorted(i for i, _ in (self._on_the_motion(points, rank) or generic).pivots)
         self._check_velocities(points, independent)
         self._check_freedom(independent)
-        jacobian = [row.partials for row in self.rows]
-        return points, independent, self._chosen(jacobian, independent, points)
+        return points, independent
 
     def _on_the_motion(self, points: _Points, rank: int) -> Eliminated | None:
         """Rows that are independent on the motion, where as many are as elsewhere: it may be where others are not."""
@@ -218,7 +223,9 @@ class _Analysis:
             hint = "leave one of them out; the contact of 'rolling' wants 'axes' that do not spin with the wheel"
         raise Unsound([Fault("no-freedom", message, tuple(self.rows[i].name for i in independent), hint)])
 
-    def _chosen(self, jacobian: Sequence[Sequence[Polynomial]], independent: list[int], points: _Points) -> Pivots:
+    def _chosen(self, independent: list[int], points: _Points) -> Pivots:
+        """How the rows are solved."""
+        jacobian = [row.partials for row in self.rows]
         columns, required = self._columns(len(independent))
         try:
             regular = regular_at(points.jacobians())
@@ -240,7 +247,8 @@ class _Analysis:
         return Message("for example dependent: [[[names]]]", names=names)
 
     def result(self) -> Constraints:
-        points, independent, pivots = self.pivots()
+        points, independent = self.independent_rows()
+        pivots = self._chosen(independent, points)
         jacobian = [row.partials for row in self.rows]
         still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
         shifts = [self.ring.substitute(row.velocity, still) for row in self.rows]
