@@ -101,7 +101,7 @@ def given_numbers(
         unread = _unread(system, assigned)
         lacking = [shown for shown in error.lack.names if shown.split(" ")[0] not in unread]
         if lacking:
-            options.complaints.append(missing(file, lacking, say=options.say))
+            options.complaints.append(missing(file, lacking, say=options.say, led=bool(system.constraints)))
         return None, assigned.values
 
 
@@ -216,7 +216,9 @@ def _check_target(name: str, span: Span, system: System, wrong: Complaints) -> b
 # What has no value, said once, with how to give it.
 
 
-def missing(file: Path, shown: Sequence[str], what: str = "value", say: Callable[[str], str] = str) -> str:
-    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
-    unfit_names = unfit(shown, what)
+def missing(
+    file: Path, shown: Sequence[str], what: str = "value", say: Callable[[str], str] = str, led: bool = False
+) -> str:
+    """The complaint of ``study.missing``, about a file."""
+    unfit_names = unfit(shown, what, led)
     return render_option(Complaint(unfit_names.code, unfit_names.message, None, unfit_names.hint), "", str(file), say)

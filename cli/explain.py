@@ -120,16 +120,19 @@ def _verdict(word: str) -> Iterator[str]:
 
 def _theorem(word: str) -> Iterator[str]:
     """What a theorem needs and gives, each time it stands in the table of those of problem 6."""
-    from mbsym.problems.stability.words import THEOREMS, Ground, HigherOrder
+    from mbsym.problems.stability.words import THEOREMS, Fact, Ground, HigherOrder, implied
 
-    for theorem in THEOREMS:
-        if theorem.name.casefold() == word.casefold():
-            needs = "".join(f"\n    {fact.value}" for fact in type(next(iter(theorem.needs))) if fact in theorem.needs)
+    named = [theorem for theorem in THEOREMS if theorem.name.casefold() == word.casefold()]
+    families = {Fact.LEFT_BUT_TURNED, Fact.LEFT_BUT_STEADY}
+    for theorem in named:
+        others = (other for other in named if other is not theorem and other.gives is theorem.gives)
+        if not any(other.needs <= implied(theorem.needs) for other in others):  # else it is an instance
+            needs = "".join(f"\n    {fact.value}" for fact in Fact if fact in theorem.needs)
             if theorem.name == "Routh":  # it is Lagrange-Dirichlet's theorem on what ignoring coordinates leaves
                 needs += "\n    cyclic coordinates left out, their momenta kept"
             gives = "instability" if theorem.gives is None else "stability"
             if theorem.gives is Ground.DECAYS:
-                gives = "asymptotic stability (where a family is named: to a member of it)"
+                gives = "asymptotic stability" + (", to a member of the family" if theorem.needs & families else "")
             yield f"{theorem.name}, problem 6: {gives}, where{needs}"
     if any(order and order.value.casefold() == word.casefold() for order in HigherOrder):
         yield "A theorem of problem 11: mbsym explain 11"

@@ -7,13 +7,16 @@ machine code (``mbsym.numerics.kernels.stored``), by its rules of whom to trust;
 
 from __future__ import annotations
 
+import copyreg
 import pickle
 import platform
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib import metadata
-from typing import TypeVar
+from typing import Any, TypeVar
+
+from flint import acb, arb
 
 from mbsym.batch.digests import derivation
 from mbsym.numerics.kernels import stored
@@ -36,9 +39,24 @@ def remembered(
             return answer, True
     answer = measure()
     if sound(answer):
-        with suppress(pickle.PicklingError, TypeError):
+        with suppress(pickle.PicklingError, TypeError, ValueError):
             stored.keep(key, pickle.dumps(answer, pickle.HIGHEST_PROTOCOL), stored.MEASURED)
     return answer, False
+
+
+def _of_balls(x: arb) -> tuple[Callable[..., arb], tuple[Any, ...]]:
+    return _ball, tuple(tuple(map(int, part.man_exp())) for part in (x.mid(), x.rad()))
+
+
+def _ball(middle: tuple[int, int], radius: tuple[int, int]) -> arb:
+    """m 2^e about its middle.  Radii become the next number of 30 bits above what is given: given is a little less."""
+    mantissa, exponent = radius
+    more = 31 - mantissa.bit_length() if mantissa else 0
+    return arb(arb(middle), arb(((mantissa << more) - bool(mantissa), exponent - more)))
+
+
+copyreg.pickle(arb, _of_balls)
+copyreg.pickle(acb, lambda z: (acb, (z.real, z.imag)))
 
 
 def _surroundings() -> list[str]:

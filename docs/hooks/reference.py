@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import commands_page
 import description_page
 import json_page
+import problems_page
 import python_page
 
 PAGES = {
@@ -21,7 +22,13 @@ PAGES = {
     "reference/json.md": json_page.page,
 }
 #: What is made stands below what is written.
-TAILS = {"reference/description.md": description_page.tail, "reference/commands.md": commands_page.tail}
+TAILS = {
+    "reference/description.md": description_page.tail,
+    "reference/commands.md": commands_page.tail,
+    "reference/problems.md": problems_page.tail,
+}
+#: Where docs/theory.md has the words of verdicts.
+VERDICTS = "<!-- verdicts -->"
 
 
 def on_files(files: Files, config: Any, **_: Any) -> Files:
@@ -34,6 +41,7 @@ def on_files(files: Files, config: Any, **_: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
-    """A page with what is made for its end."""
+    """A page with what is made for it."""
     tail = TAILS.get(page.file.src_uri)
+    markdown = markdown.replace(VERDICTS, problems_page.verdicts())
     return f"{markdown}\n\n{tail()}" if tail else markdown

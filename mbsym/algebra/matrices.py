@@ -14,6 +14,8 @@ from functools import reduce
 from itertools import combinations
 from typing import Any, Generic, TypeVar, overload
 
+from flint import fmpq
+
 from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.failures import Failure, Limit, NoClosedForm, TooLargeError
 
@@ -346,6 +348,38 @@ def reduced_rows(matrix: Any) -> dict[int, list[Any]]:
     """Of a flint matrix, or one like it: the rows of the reduced echelon form by the columns of their pivots."""
     rows, rank = matrix.rref()
     return {next(k for k, x in enumerate(row) if x != 0): row for row in rows.tolist()[:rank]}
+
+
+def null_space_of_rationals(rows: Iterable[Mapping[int, fmpq]], size: int) -> list[list[fmpq]]:
+    """A basis of what rows {column: entry} annul that come one by one; none is asked for once nothing is left."""
+    reduced: dict[int, dict[int, fmpq]] = {}
+    for given in rows:
+        row = dict(given)
+        for column in [column for column in given if column in reduced]:
+            _subtract(row, row[column], reduced[column])
+        if not row:
+            continue
+        pivot = min(row)
+        row = {column: x / row[pivot] for column, x in row.items()}
+        for other in reduced.values():
+            if pivot in other:
+                _subtract(other, other[pivot], row)
+        reduced[pivot] = row
+        if len(reduced) == size:
+            return []
+    zero, one = fmpq(0), fmpq(1)
+    whole = {pivot: [row.get(column, zero) for column in range(size)] for pivot, row in reduced.items()}
+    return null_vectors(Operators(zero, one), whole, size)
+
+
+def _subtract(row: dict[int, fmpq], factor: fmpq, other: Mapping[int, fmpq]) -> None:
+    """row -= factor * other, in place; no zeros are kept."""
+    for column, x in other.items():
+        left = row.get(column, 0) - factor * x
+        if left:
+            row[column] = left
+        else:
+            del row[column]
 
 
 def null_space(algebra: Algebra[S], rows: Table[S], size: int) -> list[list[S]]:

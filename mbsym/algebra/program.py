@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import isqrt
+from operator import add, mul, sub
 from typing import Any, NamedTuple
 
 from mbsym.algebra.base import Algebra
@@ -34,6 +35,9 @@ class Choice(str):
 
 
 _CHOICE = Choice("sign")
+
+#: What the scalars' own operators do.
+_JOINED: dict[str, Callable[[Any, Any], Any]] = {"multiply": mul, "add": add, "subtract": sub}
 
 
 class Node:
@@ -79,10 +83,11 @@ class Program(Algebra[Node]):
 
     def __init__(self) -> None:
         self.instructions: list[Instruction] = []
-        self._known: dict[Instruction, Node] = {}
+        self._known: dict[tuple[str, tuple[int, ...], str | Fraction | None], Node] = {}
         self._whole: dict[int, Node] = {}  # whole numbers, which occur most often
         self._values: list[Fraction | None] = []  # of constants, by number
         self._opposites: list[Node | None] = []  # a where the node is -a, by number
+        self._minus: dict[int, Node] = {}  # of constants, by number
         self._live: dict[tuple[int, ...], list[int]] = {}  # what outputs need, by their numbers
         self._angles: dict[int, LinearForm | None] = {}  # linear forms, by number
         self.zero = self.number(0)
@@ -97,12 +102,12 @@ class Program(Algebra[Node]):
     # --- building ----------------------------------------------------------------------------------------------------
 
     def _node(self, operation: str, operands: tuple[int, ...] = (), payload: str | Fraction | None = None) -> Node:
-        instruction = Instruction(operation, operands, payload)
-        known = self._known.get(instruction)
+        known = self._known.get((operation, operands, payload))
         if known is None:
+            instruction = Instruction(operation, operands, payload)
             known = self._known[instruction] = Node(self, len(self.instructions))
             self.instructions.append(instruction)
-            self._values.append(payload if isinstance(payload, Fraction) else None)
+            self._values.append(payload if operation == "constant" else None)  # type: ignore[arg-type]
             self._opposites.append(None)
         return known
 
@@ -139,12 +144,12 @@ class Program(Algebra[Node]):
         return x.number == 0  # the constant 0 is the first instruction of every program
 
     def minus(self, a: Node) -> Node:
-        value = self._values[a.number]
-        if value is not None:
-            return self.number(-value)
-        inner = self._opposites[a.number]
+        inner = self._opposites[a.number] or self._minus.get(a.number)
         if inner is not None:
             return inner
+        value = self._values[a.number]
+        if value is not None:
+            return self._minus.setdefault(a.number, self.number(-value))
         instruction = self.instructions[a.number]
         if instruction.operation == "subtract":
             return self._node("subtract", instruction.operands[::-1])
@@ -302,13 +307,13 @@ class Program(Algebra[Node]):
         targets = tuple(node.number for node in outputs)
         known = self._live.get(targets)
         if known is None:  # instructions never change: what is known of them stays true
-            needed: set[int] = set()
-            pending = list(targets)
+            needed, instructions = set(targets), self.instructions
+            pending = list(needed)
             while pending:
-                number = pending.pop()
-                if number not in needed:
-                    needed.add(number)
-                    pending.extend(self.instructions[number].operands)
+                for operand in instructions[pending.pop()].operands:
+                    if operand not in needed:
+                        needed.add(operand)
+                        pending.append(operand)
             if len(self._live) >= MOST_REMEMBERED:
                 del self._live[next(iter(self._live))]
             known = self._live[targets] = sorted(needed)
@@ -370,7 +375,9 @@ class Program(Algebra[Node]):
         turned: dict[int, Any] = {}  # sine and cosine, by their argument
         for number in self.live(outputs):
             operation, operands, payload = self.instructions[number]
-            if len(operands) == 2:
+            if (joined := _JOINED.get(operation)) is not None:
+                value = joined(values[operands[0]], values[operands[1]])
+            elif len(operands) == 2:
                 value = self._joined(operation, values[operands[0]], values[operands[1]], algebra)
             elif operation in ("sin", "cos"):
                 if (argument := operands[0]) not in turned:
@@ -392,15 +399,8 @@ class Program(Algebra[Node]):
 
     @staticmethod
     def _joined(operation: str, a: Any, b: Any, algebra: Algebra) -> Any:
-        match operation:
-            case "multiply":
-                return a * b
-            case "add":
-                return a + b
-            case "subtract":
-                return a - b
-            case "divide":
-                return algebra.times(a, algebra.reciprocal(b))
+        if operation == "divide":
+            return algebra.times(a, algebra.reciprocal(b))
         if operation in ROUNDINGS:
             return algebra.zero
         raise ValueError(f"no such operation: {operation}")

@@ -135,10 +135,10 @@ def _rests_at_zero(analysis: Analysis) -> bool | None:
         except Unavailable:
             return False
     try:
-        scene = linearisation.quadratised(resting.parameters_scene, resting.system, order=0)  # nothing deviates here
-        values = [-x.value for x in newton_euler.residuals(scene).values()]
+        resting_scene, moving = (linearisation.quadratised(resting.parameters_scene, resting.system, k) for k in (0, 1))
+        values = [-x.value for x in newton_euler.residuals(resting_scene).values()]  # nothing deviates here
         rest_state = equilibrium.equilibrium(resting.parameters_scene, values, resting.signs)
-        if rest_state.satisfied and equilibrium.singular_displacements(resting.expanded):
+        if rest_state.satisfied and equilibrium.singular_displacements(moving, lambda: resting.expanded):
             return resting.equilibrium.satisfied  # more is demanded there
         return rest_state.satisfied
     except (Failure, Unavailable):

@@ -189,10 +189,11 @@ def motion_check(analysis: Analysis) -> Check | None:
 
 
 def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
-    """What the constrained motion keeps."""
+    """What the motion keeps, with constraints or in speeds."""
     from mbsym.problems.constraints.integrals import integrals
 
-    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))
+    programs = programs_of(analysis) if analysis.system.constraints else None
+    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, programs)
 
 
 def integrals_check(analysis: Analysis, integrals: tuple[Integral, ...]) -> Check:

@@ -201,7 +201,7 @@ def equilibrium_of(analysis: Analysis) -> Equilibrium:
         return given.at_zero()
     residuals = [x.polynomial for x in analysis.residuals]
     on_motion = bool(analysis.system.constraints)
-    singular = () if on_motion else equilibrium.singular_displacements(analysis.expanded)
+    singular = () if on_motion else equilibrium.singular_displacements(analysis.expanded, lambda: analysis.expanded)
     residuals += approximation.beside(analysis, singular)
     return equilibrium.equilibrium(analysis.parameters_scene, residuals, analysis.signs, on_motion, singular)
 
@@ -299,12 +299,16 @@ def first_order_of(analysis: Analysis) -> FirstOrder:
         why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
         raise Unavailable("first order", why)
     equations = cast("SpeedEquations", analysis.equations)
-    reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
+    reduced = analysis.reduced if analysis.system.constraints else None
     return first_order.first_order(analysis.form, equations, analysis.equilibrium, reduced)
 
 
 def told_of(analysis: Analysis) -> ToldSystem:
     """The equations through named intermediates."""
+    if analysis.system.speeds:
+        reason = "not derived: speeds and unit vectors are not taken into account here yet"
+        hint = "without 'speeds' and 'orientation' it is derived in generalised velocities"
+        raise Unavailable("told", NoResult(reason, hint, "speeds", "speeds"))
     return told_system(analysis.system, analysis.ring, analysis.terms)
 
 
@@ -330,13 +334,8 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
     Raises Failure where formulas outgrow a limit; the reason names then what is conserved nevertheless, if the
     straight-line program from which that is read has passed its check.
     """
-    if analysis.system.constraints:
+    if analysis.system.constraints or analysis.system.speeds:
         return constrained.integrals_of(analysis)
-    if analysis.system.speeds:
-        from mbsym.problems import in_speeds
-
-        equations = cast("SpeedEquations", analysis.equations)
-        return in_speeds.integrals(analysis.form, analysis.scene, analysis.energy, equations)
     try:
         return integrals.integrals(analysis.scene, analysis.energy, analysis.equations, analysis.programs)
     except Failure as failure:

@@ -6,12 +6,14 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Ring
+from mbsym.analysis import constrained
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.canonical import Brackets, Hamilton, Routh
+    from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+    from mbsym.problems.canonical import Brackets, Hamilton, Independent, Routh
     from mbsym.problems.checks import Check
 
 # What few ask for is not imported for nothing: names stand here, modules in the functions.
@@ -24,11 +26,19 @@ REDUCED, CANONICAL, INVOLUTION = "Routh's equations", "canonical equations", "Po
 CHECKED = {REDUCED: "routh", CANONICAL: "hamilton", INVOLUTION: BRACKETS}
 
 
+def independent(analysis: Analysis) -> Independent:
+    """The system in the velocities, or speeds, that constraints leave."""
+    from mbsym.problems.canonical import Independent
+
+    general = analysis.system.constraints or analysis.system.speeds
+    return Independent(analysis.form, analysis.scene, analysis.energy, analysis.equations if general else None)
+
+
 def hamilton(analysis: Analysis) -> Hamilton:
     """The canonical equations, formulas written as the description wants its names."""
     from mbsym.problems import canonical
 
-    equations = canonical.hamilton(analysis.system, analysis.terms)
+    equations = canonical.hamilton(independent(analysis), analysis.terms)
     _write(analysis, equations.hamiltonian.ring)
     return equations
 
@@ -37,7 +47,7 @@ def routh(analysis: Analysis) -> Routh:
     """Routh's equations."""
     from mbsym.problems import canonical
 
-    equations = canonical.routh(analysis.system, analysis.terms)
+    equations = canonical.routh(independent(analysis), analysis.terms)
     _write(analysis, equations.function.ring)
     return equations
 
@@ -46,7 +56,7 @@ def brackets(analysis: Analysis) -> Brackets | None:
     """The Poisson brackets of problem 7's integrals; None without any."""
     from mbsym.problems import canonical as problem
 
-    return problem.brackets(analysis.system, analysis.hamilton, analysis.integrals)
+    return problem.brackets(independent(analysis), analysis.hamilton, analysis.integrals)
 
 
 def _write(analysis: Analysis, ring: Ring) -> None:
@@ -72,13 +82,17 @@ def wanted_checks(analysis: Analysis) -> Iterator[str]:
 # --- second routes: None where there is nothing to compare ---
 
 
+def _programs(analysis: Analysis) -> ConstrainedPrograms | None:
+    return constrained.programs_of(analysis) if analysis.system.constraints else None
+
+
 def _hamilton(analysis: Analysis) -> Check | None:
     equations = analysis.optional("hamilton")
     if equations is None:
         return None
     from mbsym.problems.canonical import check_hamilton
 
-    return check_hamilton(analysis.oracles, equations)
+    return check_hamilton(analysis.oracles, independent(analysis), equations, _programs(analysis))
 
 
 def _routh(analysis: Analysis) -> Check | None:
@@ -87,7 +101,7 @@ def _routh(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.canonical import check_routh
 
-    return check_routh(analysis.oracles, equations)
+    return check_routh(analysis.oracles, independent(analysis), equations, _programs(analysis))
 
 
 def _brackets(analysis: Analysis) -> Check | None:

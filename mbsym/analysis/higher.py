@@ -437,8 +437,6 @@ def check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.normal_forms.result import symbols_agree
 
-    if analysis.system.speeds:
-        analysis = analysis.in_coordinates
     routes = ("normal form at the given values", "its formula in parameters, and problem 6")
     word, said = normal_form.first, normal_form.at_values.outcome.value
     if word is not None and ((word is Word.UNSTABLE and said in _STABLE) or (word.stable and said == "unstable")):

@@ -24,7 +24,7 @@ from mbsym.analysis import (
     given,
     second_routes,
 )
-from mbsym.analysis.stages import Derived, Knows, NoResult, Stage, Stages, Unavailable, later
+from mbsym.analysis.stages import Derived, Knows, NoResult, Stage, Stages, later
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column
@@ -72,14 +72,16 @@ T = TypeVar("T")
 JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 
 
-#: Stages of every system; those that the equations of motion decide; what is said of a motion and its stability.
-OF_ALL = Knows.CONSTRAINTS | Knows.SPEEDS | Knows.MATRICES
-OF_EQUATIONS = Knows.CONSTRAINTS | Knows.SPEEDS
-OF_MOTIONS = Knows.CONSTRAINTS | Knows.IN_COORDINATES | Knows.MATRICES
-
 #: The checks of what is told in coordinates, and the stage that each is about.
-CHECKED_IN_COORDINATES = {"equilibrium": "equilibrium", "linearisation": "linearisation"}
-CHECKED_IN_COORDINATES |= {"perturbed motion": "linearisation", "stabilisation": "stabilisation", **forms.CHECKED}
+CHECKED_IN_COORDINATES = {
+    "equilibrium": "equilibrium",
+    "linearisation": "linearisation",
+    "perturbed motion": "linearisation",
+    "stabilisation": "stabilisation",
+    "normal forms": "normal_forms",
+    constrained.REACTIONS: "reactions",
+    forms.REDUCED: "routh",
+}
 
 
 class Problem(Derived["Analysis", T]):
@@ -90,7 +92,7 @@ class Problem(Derived["Analysis", T]):
         derive: Callable[[Analysis], T],
         stands_on: Sequence[str],
         says: bool = False,
-        knows: Knows = Knows.NO_OTHERS,
+        knows: Knows = Knows.BODIES,
         module: str = "",
     ) -> None:
         super().__init__(derive, stands_on, says, knows)
@@ -171,16 +173,12 @@ class Analysis(Stages):
         return stage
 
     def result(self, name: str, compute: Callable[[], Any]) -> Any:
-        """The value of a stage; one that does not know constraints, or speeds, has none where there are some."""
+        """The value of a stage; one that does not know constraints has none where there are some."""
         knows = getattr(type(self), name).knows
         if self.system.constraints and Knows.CONSTRAINTS not in knows:
             compute = lambda: refuse_constraints(self.system, Message("not derived"))  # noqa: E731
-        elif self.system.speeds and Knows.IN_COORDINATES in knows:
-            from mbsym.analysis import deriving
-
-            compute = lambda: deriving.result_in_coordinates(self, name)  # noqa: E731
         elif self.system.speeds and Knows.SPEEDS not in knows:
-            compute = _without_speeds
+            compute = lambda: deriving.result_in_coordinates(self, name)  # noqa: E731
         elif self.system.linear is not None and Knows.MATRICES not in knows:
             compute = given.refuse
         return super().result(name, compute)
@@ -196,16 +194,16 @@ class Analysis(Stages):
             write_as(ring, {symbol.name: symbol.latex for symbol in self.system.symbols})
         return ring
 
-    scene = Derived["Analysis", Scene](lambda a: a.over_ring(), knows=OF_ALL)
-    parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False, inputs=False), knows=OF_ALL)
+    scene = Derived["Analysis", Scene](lambda a: a.over_ring(), knows=Knows.ALL)
+    parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False, inputs=False), knows=Knows.ALL)
     #: The system whose inputs keep their values on the unperturbed motion.
     held_scene = Derived["Analysis", Scene](
-        lambda a: a.over_ring(inputs=False) if a.system.inputs else a.scene, knows=Knows.CONSTRAINTS | Knows.MATRICES
+        lambda a: a.over_ring(inputs=False) if a.system.inputs else a.scene, knows=Knows.MOTIONS
     )
-    signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene), knows=OF_ALL)
+    signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene), knows=Knows.ALL)
     programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring), knows=Knows.SPEEDS)
-    expanded = Derived["Analysis", Scene](approximation.expanded, knows=Knows.IN_COORDINATES)
-    told = Derived["Analysis", ToldSystem](deriving.told_of)
+    expanded = Derived["Analysis", Scene](approximation.expanded, knows=Knows.COORDINATES)
+    told = Derived["Analysis", ToldSystem](deriving.told_of, knows=Knows.SPEEDS)
 
     @cached_property
     def oracles(self) -> Oracles:
@@ -225,8 +223,6 @@ class Analysis(Stages):
 
         Raises Unavailable where the speeds do not determine these on the unperturbed motion.
         """
-        from mbsym.analysis import deriving
-
         return deriving.analysis(self)
 
     @cached_property
@@ -249,62 +245,55 @@ class Analysis(Stages):
 
     # --- the numbered problems ---
 
-    kinematics = Problem[Kinematics](lambda a: kinematics.kinematics(a.scene), ("kinematics",), knows=OF_EQUATIONS)
-    energy = Problem[Energy](deriving.energy_of, ("energy",), knows=OF_EQUATIONS)
+    kinematics = Problem[Kinematics](lambda a: kinematics.kinematics(a.scene), ("kinematics",))
+    energy = Problem[Energy](deriving.energy_of, ("energy",))
     equations = Problem[Equations](
         deriving.equations_of,
         ("equations of motion", "constraints", "constrained motion"),
-        knows=OF_EQUATIONS,
     )
-    constraints: Derived[Analysis, Constraints] = Derived(
-        constrained.constraints_of, ("constraints",), knows=OF_EQUATIONS
-    )
+    constraints: Derived[Analysis, Constraints] = Derived(constrained.constraints_of, ("constraints",))
     #: The same in generalised velocities, of a system in speeds.
-    tied_in_coordinates: Derived[Analysis, Constraints] = Derived(
-        constrained.constraints_in_coordinates, knows=OF_EQUATIONS
-    )
+    tied_in_coordinates: Derived[Analysis, Constraints] = Derived(constrained.constraints_in_coordinates)
     reactions = Derived["Analysis", tuple[Any, ...]](
         constrained.reactions_of, (constrained.REACTIONS,), knows=Knows.CONSTRAINTS
     )
     reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced, knows=Knows.CONSTRAINTS)
-    residuals = Derived["Analysis", Column](approximation.residuals, knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES)
+    residuals = Derived["Analysis", Column](approximation.residuals, knows=Knows.CONSTRAINTS)
     equilibrium = Problem[Equilibrium](
         deriving.equilibrium_of,
         ("equilibrium",),
         says=True,
-        knows=OF_MOTIONS,
+        knows=Knows.MOTIONS,
     )
-    first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation, knows=OF_MOTIONS)
+    first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation, knows=Knows.MOTIONS)
     linearisation = Problem[Linearisation](
         approximation.autonomous,
         ("linearisation", "perturbed motion"),
-        knows=OF_MOTIONS,
+        knows=Knows.MOTIONS,
     )
     state_space: Derived[Analysis, StateSpace] = Derived(
-        deriving.state_space_of, ("linearisation", "perturbed motion"), knows=OF_MOTIONS
+        deriving.state_space_of, ("linearisation", "perturbed motion"), knows=Knows.MOTIONS
     )
-    judgeable = Derived["Analysis", Linearisation](approximation.judgeable, knows=OF_MOTIONS)
-    balance = Derived["Analysis", Balance](deriving.balance_of, knows=OF_MOTIONS)
-    stability = Problem[Stability](deriving.stability_of, JUDGED, says=True, knows=OF_MOTIONS)
+    judgeable = Derived["Analysis", Linearisation](approximation.judgeable, knows=Knows.MOTIONS)
+    balance = Derived["Analysis", Balance](deriving.balance_of, knows=Knows.MOTIONS)
+    stability = Problem[Stability](deriving.stability_of, JUDGED, says=True, knows=Knows.MOTIONS)
     integrals = Problem[tuple[Integral, ...]](
         deriving.first_integrals,
         ("equations of motion", *constrained.CHECKS, "first integrals"),
         says=True,
-        knows=OF_EQUATIONS,
     )
 
     stabilisation: Problem[Stabilisation] = Problem(
         deriving.stabilisation_of,
         (*JUDGED, "stabilisation"),
         says=True,
-        knows=OF_MOTIONS,
+        knows=Knows.MOTIONS,
     )
 
     polynomial_integrals: Problem[Polynomials] = Problem(
         later("mbsym.analysis.polynomial", "polynomials_of"),
         ("equations of motion", "polynomial integrals"),
         says=True,
-        knows=OF_EQUATIONS,
     )
 
     further_integrals = Derived["Analysis", tuple[Integral, ...]](
@@ -318,36 +307,33 @@ class Analysis(Stages):
         later("mbsym.analysis.invariant", "invariant_sets_of"),
         ("equations of motion", "first integrals"),
         says=True,
-        knows=OF_EQUATIONS,
     )
 
     normal_forms: Problem[NormalForms] = Problem(
         later("mbsym.analysis.higher", "normal_forms_of"),
         (*JUDGED, "normal forms"),
         says=True,
-        knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES,
+        knows=Knows.CONSTRAINTS,
     )
 
     small_parameters: Problem[SmallParameters] = Problem(
         later("mbsym.analysis.small", "small_parameters_of"),
         ("equations of motion", "energy"),
         says=True,
-        knows=OF_ALL,
+        knows=Knows.ALL,
         module="small_parameter",
     )
 
     # --- problem 5 in speeds, of a system that has some ---
 
-    first_order: Derived[Analysis, FirstOrder] = Derived(
-        deriving.first_order_of, ("first approximation in speeds",), knows=OF_EQUATIONS
-    )
+    first_order: Derived[Analysis, FirstOrder] = Derived(deriving.first_order_of, ("first approximation in speeds",))
 
     # --- problem 3 in other forms, for whoever asks ---
 
-    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,), knows=Knows.IN_COORDINATES)
-    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,), knows=Knows.IN_COORDINATES)
+    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,))
+    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,), knows=Knows.CONSTRAINTS)
     brackets: Derived[Analysis, Brackets | None] = Derived(
-        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True, knows=Knows.IN_COORDINATES
+        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True
     )
 
     # --- at numbers ---
@@ -356,24 +342,24 @@ class Analysis(Stages):
         deriving.equilibria_of,
         ("straight-line program", "constraints"),
         says=True,
-        knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES,
+        knows=Knows.CONSTRAINTS,
     )
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 
     claims: Derived[Analysis, tuple[ClaimResult, ...]] = Derived(
-        lambda a: later("mbsym.analysis.judging", "judged_claims")(a) if a.system.claims else (), knows=OF_ALL
+        lambda a: later("mbsym.analysis.judging", "judged_claims")(a) if a.system.claims else (), knows=Knows.ALL
     )
     trials: Derived[Analysis, Trials] = Derived(
-        later("mbsym.analysis.judging", "trials"), JUDGED, says=True, knows=OF_MOTIONS
+        later("mbsym.analysis.judging", "trials"), JUDGED, says=True, knows=Knows.MOTIONS
     )
     claimed_oscillation: Derived[Analysis, Oscillating] = Derived(
-        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True, knows=OF_EQUATIONS
+        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True
     )
     claimed_manifold: Derived[Analysis, Expansion] = Derived(
-        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True, knows=OF_EQUATIONS
+        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True
     )
-    checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks, knows=OF_ALL)
+    checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks, knows=Knows.ALL)
 
     def broken(self, names: Sequence[str]) -> NoResult | None:
         """Why what stands on these checks is withdrawn: the first of them that fails; None where none does."""
@@ -410,12 +396,6 @@ class Analysis(Stages):
         """Checks that were carried out on this analysis, or on a copy of it."""
         for check in checks:
             self._checks.setdefault(check.name, check)
-
-
-def _without_speeds() -> None:
-    reason = "not derived: speeds and unit vectors are not taken into account here yet"
-    hint = "without 'speeds' and 'orientation' it is derived in generalised velocities"
-    raise Unavailable("speeds", NoResult(reason, hint, "speeds", "speeds"))
 
 
 #: Every numbered problem, by its number.

@@ -91,25 +91,13 @@ def _closed(analysis: Analysis) -> Equations | None:
 
 def _equations(analysis: Analysis) -> Check | None:
     closed = _closed(analysis)
-    if closed is not None and analysis.system.speeds:
-        from mbsym.problems.in_speeds import SpeedEquations, check_equations
-
-        assert isinstance(closed, SpeedEquations)
-        return check_equations(analysis.oracles, closed)
     return None if closed is None else comparison.check_equations(analysis.oracles, closed)
 
 
 def _program(analysis: Analysis) -> Check | None:
     programs = analysis.optional("programs")
-    if programs is None:
-        return None
-    checked = comparison.check_program(analysis.oracles, programs)
-    if not analysis.system.speeds or checked.failed:
-        return checked
-    from mbsym.problems.in_speeds import check_program
-
-    in_speeds = check_program(analysis.oracles, analysis.form)
-    return in_speeds if in_speeds.failed else checked
+    form = analysis.form if analysis.system.speeds else None
+    return None if programs is None else comparison.check_program(analysis.oracles, programs, form)
 
 
 def _mass_matrix(analysis: Analysis) -> Check | None:
@@ -171,7 +159,7 @@ def _first_order(analysis: Analysis) -> Check | None:
 
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)
-    reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
+    reduced = analysis.reduced if analysis.system.constraints else None
     return first_order.check(analysis.form, closed, first_order_form, linear, analysis.equilibrium, reduced)
 
 

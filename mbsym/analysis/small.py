@@ -36,6 +36,12 @@ class Averaging(Shown):
     analysis: Analysis | None = None
     failure: str = ""
 
+    @property
+    def word_at_values(self) -> str | None:
+        """The verdict of problem 6 on the averaged motion at the given values, None where there is none."""
+        verdict = None if self.analysis is None else self.analysis.optional("stability")
+        return None if verdict is None or verdict.numerical is None else verdict.numerical.word.value
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SmallParameters(Shown):

@@ -223,11 +223,16 @@ def later(module: str, name: str) -> Callable[..., Any]:
 class Knows(Flag):
     """Which systems a stage takes into account, besides those of bodies in coordinates without constraints.
 
-    ``IN_COORDINATES``: what it tells, it tells in generalised velocities, even where the equations are in speeds.
+    What does not know speeds is told in generalised velocities, even where the equations are in speeds.
     """
 
-    NO_OTHERS = 0
-    CONSTRAINTS, SPEEDS, IN_COORDINATES, MATRICES = auto(), auto(), auto(), auto()
+    COORDINATES = 0
+    CONSTRAINTS, SPEEDS, MATRICES = auto(), auto(), auto()
+    #: What the equations of motion decide.
+    BODIES = CONSTRAINTS | SPEEDS
+    ALL = BODIES | MATRICES
+    #: What is said of a motion and its stability.
+    MOTIONS = CONSTRAINTS | MATRICES
 
 
 class Derived(Generic[Owner, T]):
@@ -243,7 +248,7 @@ class Derived(Generic[Owner, T]):
         derive: Callable[[Owner], T],
         stands_on: Sequence[str] = (),
         says: bool = False,
-        knows: Knows = Knows.NO_OTHERS,
+        knows: Knows = Knows.BODIES,
     ) -> None:
         self.derive, self.knows = derive, knows
         self.stands_on, self.says = tuple(stands_on), says

@@ -12,11 +12,11 @@ on both sides, which are found by another route.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -78,6 +78,12 @@ def branches(
     of_all = (bifurcating, leaving, changing)
     numbers = _distinct([x for points in of_all for x in (*(y.number for y in points.points), *points.continua)])
     count_proved = not any(points.unfinished or points.throughout for points in (bifurcating, leaving))
+
+    def listed(p: fmpq) -> Equilibria:
+        return equilibria(system, {**values, axis.name: fraction(p)}, limits=bounds, rank=rank)
+
+    tried = [] if count_proved else _changes(listed, *ends(axis), numbers)
+    numbers = ascending([*numbers, *tried])
     line = divided(*ends(axis), [(x, ()) for x in numbers])
     regions = [Cell(Shape.INTERVAL, span.id, span.sample, lack=Lack.NOT_REACHED) for span in line.intervals]
     corners = [Cell(Shape.ZERO, zero.id, zero.number, lack=Lack.NOT_REACHED) for zero in line.zeros]
@@ -97,7 +103,7 @@ def branches(
         for k, interval in enumerate(line.intervals):
             watch("samples", k, len(regions))
             sample = _sample(interval, line)
-            sampled = equilibria(system, {**values, axis.name: fraction(sample)}, limits=bounds, rank=rank)
+            sampled = listed(sample)
             remarks += _of_sample(sampled, fraction(sample))
             at_lost = any(x.verdict.because(Because.RANK_LOST) for x in sampled.equilibria)
             constant = count_proved and sampled.complete and not sampled.families and not at_lost
@@ -105,10 +111,13 @@ def branches(
             regions[k] = Cell(Shape.INTERVAL, k, sample, Counted(sampled.equilibria), surely)
         for k, number in enumerate(numbers):
             watch("critical values", k, len(numbers))
+            if any(number is x for x in tried):
+                near = Critical(None, False, False, tried=True)
+                corners[k] = Cell(Shape.ZERO, k, number, near, Certainty.UNDECIDED)
+                continue
             meetings, reason, singular = _meetings(parts, number)
             if meetings is not None and isinstance(number, fmpq):
-                at = equilibria(system, {**values, axis.name: fraction(number)}, limits=bounds, rank=rank)
-                meetings = _judged(meetings, at)
+                meetings = _judged(meetings, listed(number))
             if reason:
                 remarks.append(Remark(Doubt.UNCOUNTED, f"{short(number)}: {reason}"))
             border = singular or _among(number, [*leaving.continua, *(x.number for x in leaving.points)])
@@ -131,6 +140,32 @@ def branches(
         return made(pieces, interrupted=False)
     except KeyboardInterrupt:
         return made()
+
+
+#: So many values are tried where critical ones may be missing; between two of them the interval is halved so often.
+_TRIALS, _HALVINGS = 32, 5
+
+
+def _changes(listed: Callable[[fmpq], Equilibria], low: fmpq, high: fmpq, numbers: Sequence[Number]) -> list[fmpq]:
+    """Values near which the number of equilibria is seen to change, but for those between which a critical one lies."""
+
+    def count(p: fmpq) -> int | None:
+        with suppress(Failure):
+            return len(listed(p).equilibria)
+        return None
+
+    tried = [low + (high - low) * k / _TRIALS for k in range(_TRIALS + 1)]
+    tried = [p + (high - low) / (97 * _TRIALS) if p == 0 else p for p in tried]  # 0 may make the equations others
+    changes = []
+    for (a, left), (b, right) in pairwise((p, count(p)) for p in tried):
+        if left is None or right is None or left == right or any(compare(a, x) <= 0 <= compare(b, x) for x in numbers):
+            continue
+        below, above = a, b
+        for _ in range(_HALVINGS):
+            middle = (below + above) / 2
+            below, above = (middle, above) if count(middle) == left else (below, middle)
+        changes.append(between_simply(below, above))
+    return changes
 
 
 def _rank(system: System, axis: Axis, values: Mapping[str, Fraction]) -> int | None:

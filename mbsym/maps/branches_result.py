@@ -54,6 +54,7 @@ class Critical:
     ``meetings``: the equilibria there; None where they could not be counted.  ``continuum``: some are not isolated.
     ``border``: on some solution an unknown is at infinity, a root or a denominator zero, or the mass matrix singular.
     ``rank_lost``: equilibria tend to positions in which the constraints have another rank, or are there.
+    ``tried``: nothing was solved there, but the numbers of equilibria at values tried on both sides differ.
     ``balance``: whether the counts on both sides agree with the events named (None: an end, or nothing to compare).
     """
 
@@ -62,6 +63,7 @@ class Critical:
     border: bool
     balance: bool | None = None
     rank_lost: bool = False
+    tried: bool = False
 
     @property
     def events(self) -> tuple[Event, ...]:

@@ -113,18 +113,26 @@ def _lagrangian_gradient(found: Programs, variables: Sequence[str]) -> tuple[Nod
     return gradient(found.program, lagrangian, [found.environment[name] for name in variables])
 
 
-def accelerated(system: System, state: State, found: Programs) -> State:
-    """The state with the accelerations M^-1 f that the equations of motion give there.
+def accelerated(
+    system: System, state: State, found: Programs, rows: Sequence[Sequence[Node]] = (), needed: Sequence[Node] = ()
+) -> State:
+    """The state with the accelerations of  M q'' = f + J^T lambda,  J q'' = -gamma:  M^-1 f without rows.
 
-    Raises SingularPoint where M is singular, or cannot be told from it; NotRational where a value is irrational.
+    ``rows`` are J, ``needed`` gamma, nodes of the program.  Raises SingularPoint where the matrix [M, -J^T; J, 0] is
+    singular, or cannot be told from it; NotRational where a value is irrational.
     """
-    n = len(system.coordinates)
-    nodes = [node for row in found.mass_matrix for node in row] + [*found.forcing]
+    n, zero = len(system.coordinates), found.program.zero
+    nodes = [x for i in range(n) for x in (*found.mass_matrix[i], *(-row[i] for row in rows))]
+    nodes += [x for row in rows for x in (*row, *(zero for _ in rows))]
+    nodes += [*found.forcing, *(-x for x in needed)]
     values = found.program.evaluate(nodes, state.values, state.numbers)
+    size = n + len(rows)
     matrix: Any = arb_mat if any(isinstance(value, arb) for value in values) else fmpq_mat
     try:
-        solved = matrix(n, n, values[: n * n]).solve(matrix(n, 1, values[n * n :]))
+        solved = matrix(size, size, values[: size * size]).solve(matrix(size, 1, values[size * size :]))
     except ZeroDivisionError:
+        if rows:
+            raise SingularPoint("the constraints and the masses leave the accelerations open there") from None
         raise SingularPoint("the mass matrix is singular there") from None
     accelerations = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
     return State(state.numbers, {**state.values, **accelerations})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpq
 
@@ -19,6 +19,10 @@ from mbsym.mechanics.variables import has_linear_angles
 from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System, rational
+
+if TYPE_CHECKING:
+    from mbsym.mechanics.programs import Programs
+    from mbsym.mechanics.speed_programs import SpeedProgram
 
 #: Any fixed number will do; a fixed one makes reports reproducible byte for byte.
 SEED = 1788
@@ -120,6 +124,17 @@ class Oracles:
         self.system = system
         self.ring = ring
         self.count = count
+        self._masses: dict[Oracle, tuple[Programs | SpeedProgram, list[Any]]] = {}
+
+    def masses(self, oracle: Oracle, programs: Programs | SpeedProgram) -> list[Any]:
+        """The entries of M there, row by row, as the program has them: where they are rational they are found once."""
+        known, values = self._masses.get(oracle, (None, []))
+        if known is not programs:
+            nodes = [node for row in programs.mass_matrix for node in row]
+            values = programs.program.evaluate(nodes, oracle.state.values, oracle.state.numbers)
+            if not any(isinstance(value, arb) for value in values):  # these are as wide as the working precision has it
+                self._masses[oracle] = programs, values
+        return values
 
     @cached_property
     def rational(self) -> tuple[Oracle, ...]:

@@ -15,12 +15,12 @@ def denominator_names(system: System, count: int) -> tuple[str, ...]:
 
 
 def momentum_names(system: System) -> dict[str, str]:
-    """p_theta for theta, or another name where that is taken."""
+    """p_theta for theta, a coordinate or a declared speed, or another name where that is taken."""
     taken = {*system.coordinates, *system.parameter_names, *system.variables, *system.input_names}
     taken |= {item.name for item in system.prescribed} | {item.name for item in system.notation}
     taken |= {item.name for item in system.abbreviations} | {item.name for item in system.outputs}
     momenta = {}
-    for name in system.coordinates:
+    for name in (*system.coordinates, *(speed.name for speed in system.speeds)):
         free = next(x for x in (f"p_{name}", *(f"p{k}_{name}" for k in range(1, 100))) if x not in taken)
         momenta[name] = free
         taken.add(free)

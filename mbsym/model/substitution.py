@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from mbsym.expressions.rates import velocity_name
+from mbsym.expressions.rates import velocity_name, without_velocity
 from mbsym.expressions.tree import (
+    ONE,
     ZERO,
     Call,
     Derivation,
@@ -33,7 +34,8 @@ from mbsym.expressions.tree import (
 from mbsym.model.constraints import Relation
 from mbsym.model.inputs import Input
 from mbsym.model.loads import CoordinateDamper, CoordinateSpring, ForceFunction, GeneralizedForce, Load, Rayleigh
-from mbsym.model.system import MotionEntry, Parameter, System
+from mbsym.model.speeds import OMEGA, UnitVector
+from mbsym.model.system import Body, MotionEntry, Parameter, System, Vector
 
 _EXPRESSIONS = (Number, Name, Negative, Operation, Call)
 _FOLDING = {"+": add, "-": subtract, "*": multiply}
@@ -87,7 +89,7 @@ def driven(system: System, laws: Mapping[str, Expression]) -> System:
     if not system.inputs:
         return replace(system, outputs=()) if system.outputs else system
     images = {signal.name: laws.get(signal.name, signal.held) for signal in system.inputs}
-    loads = (put(load, images, folded) for load in system.loads)
+    loads = (in_coordinates(put(load.written, images, folded), system) for load in system.loads)
     remaining = tuple(load for substituted in loads if (load := substituted.simplified()) is not None)
     return replace(system, loads=remaining, inputs=(), outputs=())
 
@@ -100,6 +102,81 @@ def held(system: System) -> System:
 def with_held(inputs: tuple[Input, ...], values: Mapping[str, Expression]) -> tuple[Input, ...]:
     """The inputs with their constant values on the unperturbed motion, where these are given."""
     return tuple(replace(signal, held=values.get(signal.name, ZERO)) for signal in inputs)
+
+
+# Speeds and unit vectors in coordinates and velocities.
+
+
+def in_coordinates(load: Load, system: System) -> Load:
+    """A load of speeds and unit vectors as one of coordinates and velocities, with what was written beside.
+
+    e = C_a3 C_a2 C_a1 e_axis;  u = S q' + s0.
+    """
+    images = speeds_in_coordinates(held_names(load), system)
+    return replace(put(load, images, folded), as_written=load) if images else load
+
+
+def held_names(load: object) -> set[str]:
+    """The coordinates in a load, by name or in an expression, velocities among them."""
+    held: set[str] = set()
+    pending: list[object] = [load]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, str):
+            held.add(without_velocity(part))
+        elif isinstance(part, tuple):
+            pending.extend(part)
+        elif is_dataclass(part):
+            pending.extend(getattr(part, field.name) for field in fields(part) if field.name != "span")
+    return held
+
+
+def speeds_in_coordinates(held: Collection[str], system: System) -> dict[str, Expression]:
+    """The speeds and the components of unit vectors that are ``held``, in coordinates and velocities."""
+    images = _in_angles(held, system.bodies)
+    for speed in system.speeds:
+        if speed.name in held:
+            spin = angular_velocity(system, speed.body) if speed.turns else ()
+            images[speed.name] = substitute(speed.form, dict(zip(OMEGA, spin, strict=False)))
+    return images
+
+
+def _in_angles(held: Collection[str], bodies: Sequence[Body]) -> dict[str, Expression]:
+    """The unit vectors that are ``held`` by their components, as functions of angles."""
+    images = dict[str, Expression]()
+    for body in bodies:
+        for vector in body.orientation:
+            if isinstance(vector, UnitVector) and {*vector.components} & {*held}:
+                columns: list[Expression] = [ONE if axis == vector.axis else ZERO for axis in (1, 2, 3)]
+                for axis, angle in body.rotation.turns():
+                    columns = _turned(columns, axis, angle)
+                images |= dict(zip(vector.components, columns, strict=True))
+    return images
+
+
+def angular_velocity(system: System, body: str) -> Vector:
+    """omega of a body in its own axes, as expressions:  w <- C_a(x) w + x' e_a  turn by turn."""
+    spin: list[Expression] = [ZERO, ZERO, ZERO]
+    for name in system.path(body)[1:]:
+        for axis, angle in system.body(name).rotation.turns():
+            spin = _turned(spin, axis, angle)
+            for coordinate in system.coordinates:
+                slope = differentiate(angle, coordinate)
+                spin[axis - 1] = add(spin[axis - 1], multiply(slope, Name(velocity_name(coordinate))))
+            for item in system.prescribed:
+                spin[axis - 1] = add(spin[axis - 1], multiply(differentiate(angle, item.name), item.rate))
+            spin[axis - 1] = add(spin[axis - 1], differentiate(angle, "t"))
+    return spin[0], spin[1], spin[2]
+
+
+def _turned(v: Sequence[Expression], axis: int, angle: Expression) -> list[Expression]:
+    """C_a(x) v."""
+    i, j = axis % 3, (axis + 1) % 3
+    s, c = Call("sin", angle), Call("cos", angle)
+    turned = list(v)
+    turned[i] = add(multiply(c, v[i]), multiply(s, v[j]))
+    turned[j] = add(multiply(c, v[j]), negative(multiply(s, v[i])))
+    return turned
 
 
 # A system with expressions in place of coordinates that its relations give.

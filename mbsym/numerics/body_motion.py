@@ -162,9 +162,9 @@ def input_columns(scenario: Scenario, times: Any, positions: Any, velocities: An
     if not scenario.inputs:
         return {}
     program = bound(scenario)
-    used = set().union(*(names(signal.law) for signal in scenario.inputs))
+    used = set().union(*(names(signal.in_coordinates) for signal in scenario.inputs))
     lower = Lowering(program, {name: program.input(name) for name in (*sorted(used), "pi")})
-    nodes = tuple(lower(signal.law) for signal in scenario.inputs)
+    nodes = tuple(lower(signal.in_coordinates) for signal in scenario.inputs)
     inputs = ("t", *scenario.system.coordinates, *scenario.system.velocities)
     points = np.vstack([times, np.asarray(positions, dtype=float), np.asarray(velocities, dtype=float)])
     values = arrays.kernel(Code(program, inputs, nodes))(points)

@@ -52,11 +52,12 @@ RANK = 1e-9
 
 @dataclass(frozen=True)
 class Move:
-    """A value of the initial state that was changed."""
+    """A value of the initial state that was changed, by ``part`` of its size in the scene."""
 
     name: str
     given: float
     found: float
+    part: float
 
 
 @dataclass(frozen=True)
@@ -200,7 +201,7 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     refined = _first(searches, lambda search: exact.refined(scenario.state, state, search))
     sizes = constraints.sizes([float(x) for x in refined]).tolist()
     moves = [
-        Move(name, float(old), float(new))
+        Move(name, float(old), float(new), float(abs(old - new)) / size)
         for name, old, new, size in zip(names, scenario.state, refined, sizes, strict=True)
         if abs(old - new) > MOVED * size
     ]
@@ -393,13 +394,13 @@ class _Exact:
         """Whether the state is on the constraints as far as its bits tell."""
         values = self._constraints.at(0.0, [float(x) for x in state])
         p, slopes_of = self._constraints.places, self._constraints.slopes
-        sizes = 1 + np.abs(np.array([float(x) for x in state]))
+        sizes = self._constraints.sizes([float(x) for x in state])
         slopes = np.concatenate(
             [slopes_of(np.abs(values.gradients), sizes[:p]), slopes_of(np.abs(values.partials), sizes[p:])]
         )
         with ctx.workprec(self._bits):
             least = arb(2) ** (32 - PRECISION)
-            return all(abs(x) <= least * (1 + float(s)) for x, s in zip(self.residuals(state), slopes, strict=True))
+            return all(abs(x) <= least * float(s) for x, s in zip(self.residuals(state), slopes, strict=True))
 
     def refined(self, initial: Sequence[Fraction], state: Any, search: _Search) -> tuple[Fraction, ...]:
         """The state with as many bits as numbers have; values that did not move keep what was given."""

@@ -238,8 +238,11 @@ class _Start:
         stretched = [u - x for u, x in zip(speeds, still, strict=True)]
         named = [name for name, x in self.velocities.items() if x is not None]
         if named and len(named) == n:
-            gap = max((abs(a - b) for a, b in zip(own, speeds, strict=True)), default=arb(0))
-            if not gap < ball(AGREEMENT) * (1 + max(abs(x) for x in speeds)):
+            least, near = (
+                ball(AGREEMENT),
+                zip(own, speeds, _products(matrix, [stated[v] for v in names], still), strict=True),
+            )
+            if not all(a.overlaps(b) or abs(a - b) < least * (abs(b) + size) for a, b, size in near):
                 text = "the initial velocities are given twice, by coordinates and by speeds, and these differ"
                 self.wrong.append((velocity_name(named[0]), text))
             return speeds, tuple(stated[name] for name in names)
@@ -249,17 +252,24 @@ class _Start:
             self.wrong.append((velocity_name(both[0]), text))
             return speeds, None
         try:
-            solved = arb_mat(matrix).solve(arb_mat([[x] for x in stretched]))
+            inverse = arb_mat(matrix).inv().tolist()
         except ZeroDivisionError:
             return speeds, None
-        rates = tuple(solved[r, 0] for r in range(n))
-        narrow = all(x.rad() < arb(2) ** -200 * (1 + abs(x.mid())) for x in rates)
+        rates = tuple(sum((a * b for a, b in zip(row, stretched, strict=True)), arb(0)) for row in inverse)
+        sizes = _products(inverse, stretched, [arb(0)] * n)
+        narrow = all(x.rad() <= arb(2) ** -200 * size for x, size in zip(rates, sizes, strict=True))
         return speeds, rates if narrow else None
 
     def _nodes(self, program: Program) -> list[Any]:
         """u in (q, q', t), in the order of the speeds."""
         n = len(self.form.positions)
         return self.form.state_in_coordinates(program)[n:]
+
+
+def _products(matrix: Sequence[Sequence[arb]], vector: Sequence[arb], rest: Sequence[arb]) -> list[arb]:
+    """|A| |x| + |b|: by what A x + b is measured, whatever the units."""
+    rows = (zip(row, vector, strict=True) for row in matrix)
+    return [abs(b) + sum((abs(a * x) for a, x in row), arb(0)) for row, b in zip(rows, rest, strict=True)]
 
 
 def _within(x: arb) -> arb:

@@ -25,7 +25,7 @@ from mbsym.expressions.tree import text as spelled
 from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.model.assumptions import broken, has_sign
 from mbsym.model.inputs import Input
-from mbsym.model.substitution import driven
+from mbsym.model.substitution import driven, folded, speeds_in_coordinates
 from mbsym.model.system import InitialValue, System, overruled, velocity_name
 
 #: Irrational values are rounded to so many bits.
@@ -69,11 +69,15 @@ class Incomplete(Exception):
 
 @dataclass(frozen=True)
 class Driven:
-    """What an input is in a scenario; ``asked``: somebody said so, else it is held as on the unperturbed motion."""
+    """What an input is in a scenario; ``asked``: somebody said so, else it is held as on the unperturbed motion.
+
+    ``law`` is as it was written, ``in_coordinates`` has coordinates and velocities in place of speeds and unit vectors.
+    """
 
     name: str
     law: Expression
     asked: bool
+    in_coordinates: Expression
 
 
 @dataclass(frozen=True)
@@ -148,12 +152,15 @@ def scenario(
     if missing or numbers.contradictions:
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
     typed = {name: entry.position for name, entry in values.items() if entry.position is not None}
-    became = tuple(
-        Driven(control.name, given_laws.get(control.name, control.held), control.name in given_laws)
-        for control in inputs
-    )
+    became = tuple(_driven(control, given_laws, system) for control in inputs)
     unstated = tuple(velocity_name(name) for name in system.coordinates if values[name].velocity is None)
     return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became, unstated)
+
+
+def _driven(control: Input, laws: Mapping[str, Expression], system: System) -> Driven:
+    law = laws.get(control.name, control.held)
+    plain = folded(law, speeds_in_coordinates(names(law), system))
+    return Driven(control.name, law, control.name in laws, plain)
 
 
 def _prescribed(system: System, numbers: _Numbers) -> dict[str, tuple[Fraction, Fraction]]:
@@ -211,9 +218,7 @@ def _with_own(
         wrong.append(Contradiction("singular-start", next(iter(own)), text, hint))
     if start.missing or wrong:
         raise Incomplete(Lack(start.missing, tuple(wrong)))
-    became = tuple(
-        Driven(control.name, laws.get(control.name, control.held), control.name in laws) for control in inputs
-    )
+    became = tuple(_driven(control, laws, system) for control in inputs)
     rates = start.velocities or (arb(0),) * len(positions)
     return Scenario(
         system=system,

@@ -5,6 +5,17 @@ With L = T + U, T = 1/2 q'.M q' + A1.q' + A0, and the momenta p = dL/dq' = M q' 
     H(q, p, t) = p.q' - L = 1/2 (p - A1).M^-1 (p - A1) - A0 - U
     q' = dH/dp,      p' = -dH/dq + Q
 
+Generally u are independent velocities, q' = Y u + y0: those that constraints leave, or speeds of the system's own.
+With T in u alone and p = dT/du = M u + A1 it is the same H, on the manifold of the constraints, with
+
+    q' = Y dH/dp + y0,      p' = -Y^T dH/dq + Q + C,      {q, p} = Y,  {p_a, p_b} = W_ab = sum p_r dS_r(Y_a, Y_b)
+
+where u = S q' + s0 and C = W dH/dp and what moves as prescribed.  C = 0 where u are velocities of coordinates and the
+constraints are integrable (the fields Y_a commute): the equations are canonical then, Dirac's bracket in independent
+variables.  In speeds they are Poincare's and Chetaev's (of a body about a fixed point those of Lie and Poisson).  Where
+constraints are not integrable H is kept as it is elsewhere, but {,} violates Jacobi's identity (van der Schaft and
+Maschke).  C is not derived by itself: p' = f + dp/dt at u' = 0, of M u' = f.
+
 (H is the generalised energy T_2 - T_0 - U.)  Where L does not contain the
 coordinates c and no other force acts on them, their momenta beta are constants.  Routh's function of the others, s, is
 
@@ -18,7 +29,9 @@ coordinates c and no other force acts on them, their momenta beta are constants.
 Both are derived in a ring of their own, in which the momenta are generators.  They are compared with d'Alembert's
 principle at random exact states (``mbsym.problems.canonical``).
 
-Source: Landau & Lifshitz, Mechanics, sections 40 and 41; Pars, A Treatise on Analytical Dynamics, ch. 10.
+Source: Landau & Lifshitz, Mechanics, sections 40 and 41; Pars, A Treatise on Analytical Dynamics, ch. 10; Dirac,
+Lectures on Quantum Mechanics (1964); Chetaev, PMM 5 (1941) 253; van der Schaft & Maschke, Reports on Mathematical
+Physics 34 (1994) 225.
 
 Example:
 
@@ -30,31 +43,42 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from functools import cached_property
+from itertools import combinations, permutations
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat, fmpq_mat
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import Lowering, Scalar
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
-from mbsym.algebra.matrices import solved
+from mbsym.algebra.matrices import dot, solved
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
+from mbsym.mechanics.speed_states import all_slopes, completed, variables
+from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.momenta import denominator_names, momentum_names
-from mbsym.model.system import System, acceleration_name, velocity_name
-from mbsym.problems import energy as energies
+from mbsym.model.system import acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, FAILED, HOW_EQUAL, Check, Pair, compare, extent, how_equal
-from mbsym.problems.equations import convective_rate
-from mbsym.problems.integrals import ENERGY, Integral, total_rate
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.integrals import ENERGY, Integral
+
+if TYPE_CHECKING:
+    from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.checks import OnManifold
+    from mbsym.problems.constraints.result import Solved
 
 #: A matrix is inverted in closed form up to this size.
 MOST = 6
@@ -65,9 +89,11 @@ DENOMINATORS = 6
 
 @dataclass(frozen=True, repr=False)
 class Hamilton(Shown):
-    """``momenta`` are the names of p, ``momenta_in_velocities`` dL/dq'; ``hamiltonian`` is H(q, p, t).
+    """``momenta`` are the names of p, ``momenta_in_velocities`` dL/du; ``hamiltonian`` is H(q, p, t).
 
-    ``velocities`` are q' = dH/dp and ``rates`` p' = -dH/dq + Q, in the order of the coordinates.
+    ``velocities`` are q' = Y dH/dp + y0 of the ``positions`` in their order, Y the ``directions``; ``rates`` are p', of
+    the ``speeds`` u in theirs.  Of coordinates without constraints u is q' and Y = 1.  ``integrable`` says whether the
+    constraints on velocities are (None: undecided), ``structure`` is W; None where there are no Poisson brackets.
     """
 
     momenta: tuple[str, ...]
@@ -75,11 +101,129 @@ class Hamilton(Shown):
     hamiltonian: Formula
     velocities: Column
     rates: Column
+    positions: tuple[str, ...]
+    speeds: tuple[str, ...]
+    directions: Matrix
+    structure: Matrix | None
+    integrable: bool | None
 
     @property
     def terms(self) -> int:
         """Terms of H."""
         return self.hamiltonian.terms
+
+    @property
+    def plain(self) -> bool:
+        """Whether positions are coordinates and all their velocities independent."""
+        return tuple(map(velocity_name, self.positions)) == self.speeds
+
+    def along(self, x: Polynomial, k: int) -> Polynomial:
+        """sum over positions of  Y_sk dx/ds."""
+        ring = self.hamiltonian.ring
+        own = [(row[k], s) for row, s in zip(self.directions.polynomials, self.positions, strict=True) if row[k]]
+        return ring.reduce(sum((ring.times(y, ring.derivative(x, s)) for y, s in own), ring.zero))
+
+    @property
+    def in_quasi_momenta(self) -> bool:
+        """Whether the brackets W of momenta with each other are known and not all zero."""
+        return self.structure is not None and not all(x.is_zero for row in self.structure for x in row)
+
+
+@dataclass(frozen=True)
+class Independent:
+    """A system in its independent velocities u, polynomials of the ring of ``form``; ``equations`` tie the others."""
+
+    form: SpeedForm
+    scene: Scene
+    energy: Energy
+    equations: Equations | None
+
+    @property
+    def tied(self) -> Constraints | None:
+        return None if self.equations is None else self.equations.constraints
+
+    @cached_property
+    def solved(self) -> Solved | None:
+        """Raises NoClosedForm where the dependent velocities have none."""
+        if self.tied is not None and self.tied.solved is None:
+            raise NoClosedForm("the dependent velocities have no closed form within the budget of terms")
+        return None if self.tied is None else self.tied.solved
+
+    @cached_property
+    def speeds(self) -> tuple[Variable, ...]:
+        free = None if self.solved is None else self.solved.embedding.free
+        return self.form.speeds if free is None else tuple(self.form.speeds[k] for k in free)
+
+    @cached_property
+    def _images(self) -> dict[int, Polynomial]:
+        from mbsym.problems.constraints.motion import dependent_velocities
+
+        return {} if self.solved is None else dependent_velocities(self.form, self.solved)
+
+    def on(self, x: Polynomial) -> Polynomial:
+        """With the dependent velocities expressed by the independent ones."""
+        return self.form.ring.reduce(self.form.ring.substitute(x, self._images))
+
+    def at_rest(self, x: Polynomial) -> Polynomial:
+        """At u = 0."""
+        return self.form.ring.substitute(x, {u.index: self.form.ring.zero for u in self.speeds})
+
+    @cached_property
+    def kinetic(self) -> Polynomial:
+        return self.on(self.energy.kinetic_energy.polynomial)
+
+    @cached_property
+    def momenta(self) -> list[Polynomial]:
+        """dT/du."""
+        return [self.form.ring.derivative(self.kinetic, u.name) for u in self.speeds]
+
+    @cached_property
+    def velocities(self) -> list[Polynomial]:
+        """s' = Y u + y0."""
+        return [self.on(self.form.rates[x.name]) for x in self.form.positions]
+
+    @property
+    def integrable(self) -> bool | None:
+        """Whether what ties velocities follows from relations between positions; None where that is undecided."""
+        how = None if self.tied is None else self.tied.integrability
+        if how is None:
+            return True
+        return None if how.kept is None or how.certainty is not Certainty.PROVED else how.word == "holonomic"
+
+    def rates(self) -> list[Polynomial]:
+        """d(dT/du)/dt = f + its rate at u' = 0, of M u' = f."""
+        assert self.equations is not None
+        own = self.equations.embedded if self.tied is not None else self.equations
+        if own is None:
+            raise NoClosedForm("the equations without multipliers have no closed form within the budget")
+        drifts = [self.on(self.form.drift(p)) for p in self.momenta]
+        return [self.form.shortened(f.polynomial + x) for f, x in zip(own.forcing, drifts, strict=True)]
+
+    def structure(self) -> list[tuple[int, int, list[Polynomial]]] | None:
+        """(a, b, dS_r(Y_a, Y_b) of every r) for a < b; None where they hold angles that are no positions.
+
+        dS_r(X, Z) = sum (dS_rj/dq_i - dS_ri/dq_j) X_i Z_j.
+        """
+        form, ring, names = self.form, self.form.ring, self.form.system.coordinates
+        n = len(names)
+        if self.tied is not None or len(self.speeds) != n or n > MOST:
+            return None
+        rows = [[ring.velocity_derivative(x, name) for name in names] for x in form.in_coordinates]
+        fields = solved(ring, rows, [[ring.one if i == k else ring.zero for k in range(n)] for i in range(n)])
+        slopes = [[[ring.derivative(x, name) for name in names] for x in row] for row in rows]
+        found = []
+        for a, b in combinations(range(n), 2):
+            parts = []
+            for slope in slopes:
+                turns = [
+                    ring.times(slope[j][i] - slope[i][j], ring.times(fields[i][a], fields[j][b]))
+                    for i, j in permutations(range(n), 2)
+                ]
+                parts.append(ring.reduce(sum(turns, ring.zero)))
+            if any(ring.dependencies(x, [*form.replaced]) for x in parts):
+                return None
+            found.append((a, b, parts))
+        return found
 
 
 @dataclass(frozen=True, repr=False)
@@ -106,78 +250,131 @@ class Routh(Shown):
         return self.function.terms
 
 
+class NoBrackets(Failure):
+    """There are no Poisson brackets, or none are derived."""
+
+    code = "no-brackets"
+
+
 class NothingIgnored(Failure):
     """Routh's form is Lagrange's where nothing can be left out, and says nothing where nothing is left."""
 
     code = "nothing-ignored"
 
 
-def hamilton(system: System, terms: int) -> Hamilton:
+def hamilton(own: Independent, terms: int) -> Hamilton:
     """The canonical equations.  Raises NoClosedForm where they outgrow the budget, SingularPoint where det M = 0."""
-    names, momenta = system.coordinates, momentum_names(system)
-    spare = denominator_names(system, DENOMINATORS)
-    ring = ring_of(system, terms, moving=tuple(momenta.values()), fixed=spare)
-    scene = Scene(system, ring, ring_environment(system, ring), ring)
-    energy = energies.energy(scene)
-    values = [ring.generator("prescribed", momenta[name]) for name in names]
-    linear = [x.polynomial for x in energy.A1]
-    free = [p - a for p, a in zip(values, linear, strict=True)]
-    velocities = _solved(ring, energy.A2.polynomials, free)
-    half = ring.number(Fraction(1, 2))
-    quadratic = sum((ring.times(a, b) for a, b in zip(free, velocities, strict=True)), ring.zero)
-    whole = ring.reduce(ring.times(half, quadratic) - energy.A0.polynomial - energy.force_function.polynomial)
-    applied = generalized_forces(scene)
-    back = {ring.index("velocity", name): x for name, x in zip(names, velocities, strict=True)}
-    rates = [ring.reduce(ring.substitute(applied[name], back) - ring.derivative(whole, name)) for name in names]
-    in_velocities = [ring.velocity_derivative(energy.kinetic_energy.polynomial, name) for name in names]
-    return Hamilton(
-        momenta=tuple(momenta[name] for name in names),
-        momenta_in_velocities=column(ring, in_velocities),
+    form, system, integrable = own.form, own.form.system, own.integrable
+    called = momentum_names(system)
+    of_velocities = {velocity_name(name): name for name in system.coordinates}
+    momenta = tuple(called[of_velocities.get(u.name, u.name)] for u in own.speeds)
+    ring = ring_of(system, terms, moving=momenta, fixed=denominator_names(system, DENOMINATORS))
+    carry = Carrier(form.ring, ring, ring_environment(system, ring))
+    values = [ring.generator("prescribed", name) for name in momenta]
+    free = [p - carry(own.at_rest(slope)) for p, slope in zip(values, own.momenta, strict=True)]
+    mass = [[carry(form.ring.derivative(slope, u.name)) for u in own.speeds] for slope in own.momenta]
+    speeds = _solved(ring, mass, free)
+    half, potential = ring.number(Fraction(1, 2)), own.energy.force_function.polynomial
+    whole = ring.reduce(ring.times(half, ring.dot(free, speeds)) - carry(own.at_rest(own.kinetic)) - carry(potential))
+    rates = [carry(x) for x in own.velocities]
+    places = [form.ring.generators[u.index] for u in own.speeds]
+    along = {ring.index(g.kind, g.name): ring.derivative(whole, p) for g, p in zip(places, momenta, strict=True)}
+    canonical = bool(integrable) and not system.speeds
+    turning = () if canonical else own.structure()
+    structure = [[ring.zero] * len(momenta) for _ in momenta]
+    for a, b, parts in turning or ():
+        structure[a][b] = ring.reduce(ring.dot(values, [carry(x) for x in parts]))
+        structure[b][a] = -structure[a][b]
+    found = Hamilton(
+        momenta=momenta,
+        momenta_in_velocities=column(ring, [carry(slope) for slope in own.momenta]),
         hamiltonian=Formula(ring, whole),
-        velocities=column(ring, [ring.derivative(whole, momenta[name]) for name in names]),
-        rates=column(ring, rates),
+        velocities=column(ring, [ring.substitute(x, along) for x in rates]),
+        rates=(),
+        positions=tuple(x.name for x in form.positions),
+        speeds=tuple(u.name for u in own.speeds),
+        directions=Matrix.of(ring, [[ring.derivative(x, u.name) for u in own.speeds] for x in rates]),
+        structure=None if turning is None else Matrix.of(ring, structure),
+        integrable=integrable,
     )
+    if canonical:
+        acting = generalized_forces(own.scene)
+        forces = [carry(own.on(acting[name])) for name in found.positions]
+        work = [ring.dot([row[k] for row in found.directions.polynomials], forces) for k, _ in enumerate(momenta)]
+        moved = [ring.substitute(x, along) - found.along(whole, k) for k, x in enumerate(work)]
+    else:
+        moved = [ring.substitute(carry(x), along) for x in own.rates()]
+    return replace(found, rates=column(ring, [ring.reduce(x) for x in moved]))
 
 
-def routh(system: System, terms: int) -> Routh:
+def routh(own: Independent, terms: int) -> Routh:
     """Routh's equations of what is left of a system without its cyclic coordinates.
 
-    Raises NothingIgnored where there is no cyclic coordinate without a force on it, or nothing else is left,
-    NoClosedForm where formulas outgrow the budget.
+    Raises NothingIgnored where there is no cyclic coordinate without a force on it, nothing else is left, or
+    constraints are not integrable; NoClosedForm where formulas outgrow the budget.
     """
+    if not own.integrable:
+        raise NothingIgnored(
+            "Routh's equations are made of Lagrange's in independent velocities, which hold where constraints are "
+            "integrable; these are not"
+            if own.integrable is False
+            else "Routh's equations are made of Lagrange's in independent velocities, which hold where constraints are "
+            "integrable; whether these are is undecided"
+        )
+    system, form = own.form.system, own.form
     all_momenta = momentum_names(system)
     ring = ring_of(system, terms, fixed=(*all_momenta.values(), *denominator_names(system, DENOMINATORS)))
-    scene = Scene(system, ring, ring_environment(system, ring), ring)
-    energy = energies.energy(scene)
-    applied = generalized_forces(scene)
-    ignored = tuple(name for name in system.coordinates if name in energy.cyclic and ring.vanishes(applied[name]))
-    if any(ring.dependencies(applied[name], ignored) for name in system.coordinates):
+    carry = Carrier(form.ring, ring, ring_environment(system, ring))
+    kinetic, potential = carry(own.kinetic), carry(own.energy.force_function.polynomial)
+    velocities = dict(zip(system.coordinates, map(carry, own.velocities), strict=True))
+    free = [name for name in system.coordinates if velocity_name(name) in {u.name for u in own.speeds}]
+    along = {
+        name: {x: y for x in system.coordinates if (y := ring.velocity_derivative(velocities[x], name))}
+        for name in free
+    }
+
+    def slope(x: Polynomial, name: str) -> Polynomial:
+        return ring.dot([*along[name].values()], [ring.derivative(x, other) for other in along[name]])
+
+    acting = generalized_forces(own.scene)
+    forces = {name: carry(own.on(acting[name])) for name in system.coordinates}
+    applied = {name: ring.dot([*along[name].values()], [forces[x] for x in along[name]]) for name in free}
+    steady = (kinetic, potential, *velocities.values())
+    cyclic = [
+        name for name in free if [*along[name]] == [name] and not any(ring.dependencies(x, (name,)) for x in steady)
+    ]
+    ignored = tuple(name for name in cyclic if ring.vanishes(applied[name]))
+    if any(ring.dependencies(applied[name], ignored) for name in free):
         ignored = tuple(x for x in ignored if not any(ring.dependencies(q, (x,)) for q in applied.values()))
-    left = tuple(name for name in system.coordinates if name not in ignored)
+    left = tuple(name for name in free if name not in ignored)
     if not ignored:
-        cyclic = ", ".join(name for name in energy.cyclic if name in system.coordinates)
         raise NothingIgnored(
-            Message("cyclic are [[names]], but other forces act on them, or depend on them", names=cyclic)
+            Message("cyclic are [[names]], but other forces act on them, or depend on them", names=", ".join(cyclic))
             if cyclic
             else "no coordinate is cyclic"
         )
     if not left:
         raise NothingIgnored("all coordinates are cyclic, so that no other is left")
     beta = [ring.generator("parameter", all_momenta[name]) for name in ignored]
-    kinetic = energy.kinetic_energy.polynomial
     at_rest = {ring.index("velocity", name): ring.zero for name in ignored}
     momenta = [ring.velocity_derivative(kinetic, name) for name in ignored]
-    own = [[ring.velocity_derivative(p, name) for name in ignored] for p in momenta]
+    masses = [[ring.velocity_derivative(p, name) for name in ignored] for p in momenta]
     rest = [b - ring.substitute(p, at_rest) for b, p in zip(beta, momenta, strict=True)]
-    rates = _solved(ring, own, rest)
+    rates = _solved(ring, masses, rest)
     back = {ring.index("velocity", name): x for name, x in zip(ignored, rates, strict=True)}
-    lagrangian = ring.substitute(kinetic, back) + ring.substitute(energy.force_function.polynomial, back)
+    lagrangian = ring.substitute(kinetic, back) + ring.substitute(potential, back)
     function = ring.reduce(lagrangian - sum((ring.times(b, c) for b, c in zip(beta, rates, strict=True)), ring.zero))
     slopes = [ring.velocity_derivative(function, name) for name in left]
+    moving_as = {name: ring.substitute(x, back) for name, x in velocities.items() if name not in ignored}
+    lower = Lowering(ring, ring_environment(system, ring))
     forcing = []
-    for name, slope in zip(left, slopes, strict=True):
-        force = ring.substitute(applied[name], back) + ring.derivative(function, name)
-        forcing.append(ring.reduce(force - _convective(scene, ring, slope, left)))
+    for name, momentum in zip(left, slopes, strict=True):
+        rate = ring.derivative(momentum, "t")
+        for item in system.prescribed:
+            rate = rate + ring.times(lower(item.rate), ring.derivative(momentum, item.name))
+        for other, velocity in moving_as.items():
+            rate = rate + ring.times(velocity, ring.derivative(momentum, other))
+        forcing.append(ring.reduce(ring.substitute(applied[name], back) + slope(function, name) - ring.reduce(rate)))
     rest_of = {ring.index("velocity", name): ring.zero for name in left}
     return Routh(
         ignored=ignored,
@@ -187,15 +384,9 @@ def routh(system: System, terms: int) -> Routh:
         mass_matrix=Matrix.of(ring, [[ring.velocity_derivative(p, name) for name in left] for p in slopes]),
         forcing=column(ring, forcing),
         ignored_rates=column(ring, rates),
-        linear=column(ring, [ring.substitute(slope, rest_of) for slope in slopes]),
+        linear=column(ring, [ring.substitute(p, rest_of) for p in slopes]),
         reduced_potential=Formula(ring, -ring.substitute(function, rest_of)),
     )
-
-
-def _convective(scene: Scene, ring: Ring, x: Polynomial, left: Sequence[str]) -> Polynomial:
-    """dx/dt at s'' = 0; x does not contain the ignored coordinates."""
-    assert not ring.dependencies(x, [name for name in scene.system.coordinates if name not in left])
-    return convective_rate(scene, ring, x)
 
 
 def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Polynomial]) -> list[Polynomial]:
@@ -212,10 +403,10 @@ def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[
         raise SingularPoint("the mass matrix is singular") from None
 
 
-# Poisson brackets of the first integrals of problem 7, in coordinates and momenta.
+# Poisson brackets of the first integrals of problem 7, in positions and momenta.
 #
-#     {F, G} = sum over i of  dF/dq_i dG/dp_i - dF/dp_i dG/dq_i
-#     dF/dt  = dF/dt|_(q, p) + sum over i of  dF/dq_i dH/dp_i + dF/dp_i (-dH/dq_i + Q_i)
+#     {F, G} = sum over i of  Y_i F dG/dp_i - dF/dp_i Y_i G  +  sum over i, j of  dF/dp_i W_ij dG/dp_j
+#     dF/dt  = dF/dt|_(q, p) + sum over i of  dF/dq_i q'_i + dF/dp_i p'_i
 #
 # Integrals whose brackets are all zero are in involution.  Where no generalised forces Q act the bracket of two
 # integrals is an integral again, or a constant (Poisson's theorem).
@@ -239,57 +430,78 @@ class Brackets(Shown):
         return False if False in vanishing else None if None in vanishing else True
 
 
-def brackets(system: System, canonical: Hamilton, integrals: Sequence[Integral]) -> Brackets | None:
-    """The brackets of the ``integrals``, whose formulas are in q and q'; None without integrals."""
+def brackets(own: Independent, canonical: Hamilton, integrals: Sequence[Integral]) -> Brackets | None:
+    """The brackets of the ``integrals``, whose formulas are in positions and velocities; None without integrals.
+
+    Raises NoBrackets where there are none, or none in closed form.
+    """
     if not integrals:
         return None
-    ring = canonical.hamiltonian.ring
+    if canonical.structure is None:
+        raise NoBrackets(
+            "brackets of quasi-momenta are not derived where constraints tie speeds, or where they hold angles that "
+            "unit vectors replace"
+            if canonical.integrable
+            else "where constraints on velocities are not integrable brackets violate Jacobi's identity"
+            if canonical.integrable is False
+            else "it is undecided whether the constraints on velocities are integrable: without that brackets violate "
+            "Jacobi's identity"
+        )
+    system, ring = own.form.system, canonical.hamiltonian.ring
     environment = ring_environment(system, ring)
-    for name, velocity in zip(system.coordinates, canonical.velocities, strict=True):
-        environment[velocity_name(name)] = velocity.polynomial
+    environment |= {
+        velocity_name(q): x.polynomial for q, x in zip(canonical.positions, canonical.velocities, strict=True)
+    }
+    slopes = [ring.derivative(canonical.hamiltonian.polynomial, p) for p in canonical.momenta]
+    environment |= dict(zip(canonical.speeds, slopes, strict=True))
     carry = Carrier(integrals[0].formula.ring, ring, environment)
-    own: dict[tuple[str, str], Polynomial] = {(ENERGY, "time"): canonical.hamiltonian.polynomial}
-    for q, p in zip(system.coordinates, canonical.momenta, strict=True):
-        own["cyclic momentum", q] = ring.generator("prescribed", p)
+    known: dict[tuple[str, str], Polynomial] = {}
+    if canonical.plain:
+        known[ENERGY, "time"] = canonical.hamiltonian.polynomial
+        for q, p in zip(canonical.positions, canonical.momenta, strict=True):
+            known["cyclic momentum", q] = ring.generator("prescribed", p)
     formulas = []
     for integral in integrals:
-        known = own.get((integral.kind, integral.of))
-        formulas.append(ring.reduce(carry(integral.formula.polynomial)) if known is None else known)
-    rows = [[poisson_bracket(system, canonical, a, b) for b in formulas] for a in formulas]
+        taken = known.get((integral.kind, integral.of))
+        formulas.append(ring.reduce(carry(integral.formula.polynomial)) if taken is None else taken)
+    there = SpeedForm(system, ring)
+    rows = [[poisson_bracket(canonical, a, b) for b in formulas] for a in formulas]
+    rows = [[ring.zero if there.oriented and there.vanishes(x) else x for x in row] for row in rows]
     return Brackets(tuple(one.name for one in integrals), column(ring, formulas), Matrix.of(ring, rows))
 
 
-def poisson_bracket(system: System, canonical: Hamilton, f: Polynomial, g: Polynomial) -> Polynomial:
+def poisson_bracket(canonical: Hamilton, f: Polynomial, g: Polynomial) -> Polynomial:
     """{f, g} in the ring of the canonical equations."""
+    assert canonical.structure is not None
     ring = canonical.hamiltonian.ring
+    left, right = ([ring.derivative(x, p) for p in canonical.momenta] for x in (f, g))
     total = ring.zero
-    for q, p in zip(system.coordinates, canonical.momenta, strict=True):
-        total = total + ring.times(ring.derivative(f, q), ring.derivative(g, p))
-        total = total - ring.times(ring.derivative(f, p), ring.derivative(g, q))
+    for k, row in enumerate(canonical.structure.polynomials):
+        total = total + ring.times(canonical.along(f, k), right[k]) - ring.times(left[k], canonical.along(g, k))
+        total = total + ring.times(left[k], ring.dot(row, right))
     return ring.reduce(total)
 
 
 def rate_along(canonical: Hamilton, scene: Scene, f: Polynomial) -> Polynomial:
-    """df/dt by the canonical equations; ``scene`` is the system over their ring."""
-    ring, system = canonical.hamiltonian.ring, scene.system
+    """df/dt by the canonical equations; ``scene`` lowers formulas over their ring."""
+    ring = canonical.hamiltonian.ring
     total = ring.derivative(f, "t")
-    for item in system.prescribed:
+    for item in scene.system.prescribed:
         total = total + ring.times(scene.lower(item.rate), ring.derivative(f, item.name))
-    moved = zip(system.coordinates, canonical.momenta, canonical.velocities, canonical.rates, strict=True)
-    for q, p, velocity, rate in moved:
-        total = total + ring.times(ring.derivative(f, q), velocity.polynomial)
-        total = total + ring.times(ring.derivative(f, p), rate.polynomial)
+    names, rates = (*canonical.positions, *canonical.momenta), (*canonical.velocities, *canonical.rates)
+    for name, rate in zip(names, rates, strict=True):
+        total = total + ring.times(ring.derivative(f, name), rate.polynomial)
     return ring.reduce(total)
 
 
 # Second routes for Hamilton's and Routh's forms: d'Alembert's principle in inertial axes, at random exact states.
 #
-# Hamilton, at a state (q, q', q''):  p is what the differences of T in inertial axes give, p_i = (T(q' + e_i) -
-# T(q' - e_i))/2, and
+# Hamilton, at a state (q, q', q''), for every displacement dq that the constraints allow, du = S dq:
 #
-#     H(q, p, t) = p.q' - T - U,      dH/dp = q',      dp/dt - (-dH/dq + Q) = residual of d'Alembert's principle,
+#     p.du = dT/dq'.dq  by differences  dT/dq'_i = (T(q' + e_i) - T(q' - e_i))/2,      H(q, p, t) = p.u - T - U,
+#     (dp/dt - p').du = e.dq,  e the residual of d'Alembert's principle,      q' as the state has it,
 #
-# with dp/dt = d(dL/dq')/dt along the state.  Routh: beta is such a p of the ignored coordinates c, and
+# with dp/dt = d(dL/du)/dt along the state.  Routh: beta is such a p of the ignored coordinates c, and
 #
 #     R = T + U - beta.c',      M_R s'' - f_R = E_s - M_sc M_cc^-1 E_c      (E: the residuals),
 #
@@ -299,49 +511,88 @@ def rate_along(canonical: Hamilton, scene: Scene, f: Polynomial) -> Polynomial:
 CANONICAL, ROUTH, BRACKETS = "canonical equations", "Routh's equations", "Poisson brackets"
 
 
-def check_hamilton(truth: Oracles, canonical: Hamilton) -> Check:
-    """p, H, dH/dp and -dH/dq + Q against sums over bodies in inertial axes."""
-    system, ring, names = truth.system, canonical.hamiltonian.ring, truth.system.coordinates
-    scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
-    along = [total_rate(scene, x.polynomial) for x in canonical.momenta_in_velocities]
-    rows = zip(canonical.velocities, canonical.rates, canonical.momenta_in_velocities, strict=True)
-    lengths = {name: sum(x.terms for x in row) for name, row in zip(names, rows, strict=True)}
+def check_hamilton(
+    truth: Oracles, own: Independent, canonical: Hamilton, programs: ConstrainedPrograms | None = None
+) -> Check:
+    """p, H, q' and p' against sums over bodies in inertial axes; with constraints by ``programs`` on their manifold."""
+    system, ring = own.form.system, canonical.hamiltonian.ring
+    names = system.coordinates
+    lengths = {"all": sum(x.terms for x in (*canonical.velocities, *canonical.rates, *canonical.momenta_in_velocities))}
+    if canonical.plain:
+        rows = zip(canonical.velocities, canonical.rates, canonical.momenta_in_velocities, strict=True)
+        lengths = {name: sum(x.terms for x in row) for name, row in zip(names, rows, strict=True)}
     chosen = extent(lengths, "equations", fixed=canonical.hamiltonian.terms)
 
-    def pairs(oracle: Oracle) -> list[Pair]:
-        state = oracle.state
-        p = momenta_at(oracle, names)
-        known = Carrier(ring, state.numbers, state.values)
-        carry = Carrier(ring, state.numbers, _without(state, names) | dict(zip(canonical.momenta, p, strict=True)))
-        legendre = -(oracle.kinetic_energy + oracle.force_function)
-        for momentum, name in zip(p, names, strict=True):
-            legendre = legendre + momentum * state.values[velocity_name(name)]
+    def shown(name: str) -> bool:
+        return not canonical.plain or name in chosen.chosen
+
+    def pairs(oracle: Oracle, displacements: Mapping[str, Sequence[Scalar]]) -> list[Pair]:
+        state, series = completed(oracle), {**oracle.in_time, **variables(oracle)}
+        moved = Carrier(ring, TaylorSeries(oracle.numbers, series), series)
+        along = [moved(x.polynomial) for x in canonical.momenta_in_velocities]
+        p = [x.a for x in along]
+        hidden = _without(state, (*names, *(speed.name for speed in system.speeds)))
+        carry = Carrier(ring, state.numbers, hidden | dict(zip(canonical.momenta, p, strict=True)))
+        own_speeds = [state.values[u] for u in canonical.speeds]
+        legendre = dot(p, own_speeds) - oracle.kinetic_energy - oracle.force_function
         compared: list[Pair] = [("H", carry(canonical.hamiltonian.polynomial), legendre)]
-        for i, name in enumerate(names):
-            if name in chosen.chosen:
-                rate = known(along[i]) - carry(canonical.rates[i].polynomial)
-                velocity = state.values[velocity_name(name)]
-                compared += [
-                    (
-                        Message("[[momentum]]", momentum=canonical.momenta[i]),
-                        known(canonical.momenta_in_velocities[i].polynomial),
-                        p[i],
-                    ),
-                    (
-                        Message("dH/d[[momentum]]", momentum=canonical.momenta[i]),
-                        carry(canonical.velocities[i].polynomial),
-                        velocity,
-                    ),
-                    (Message("the rate of [[momentum]]", momentum=canonical.momenta[i]), rate, oracle.residuals[name]),
-                ]
+        for position, velocity in zip(canonical.positions, canonical.velocities, strict=True):
+            if shown(position):
+                rate = state.values[velocity_name(position)]
+                compared.append((f"{position}'", carry(velocity.polynomial), rate))
+        slopes, residuals = momenta_at(oracle, names), [oracle.residuals[name] for name in names]
+        kept = [k for k, _ in enumerate(canonical.momenta) if not canonical.plain or shown(names[k])]
+        left = [along[k].b - carry(canonical.rates[k].polynomial) for k in kept]
+        columns = all_slopes(oracle, canonical.speeds)
+        for name, y in displacements.items():
+            if shown(name):
+                turned = [dot(column, y) for column in columns]
+                work = dot(left, [turned[k] for k in kept])
+                compared.append((Message("the momenta along [[name]]", name=name), dot(p, turned), dot(slopes, y)))
+                compared.append((Message("their rates along [[name]]", name=name), work, dot(residuals, y)))
         return compared
 
     routes = ("Hamilton, closed form", D_ALEMBERT)
-    return compare(truth, CANONICAL, routes, pairs, chosen.states, chosen.remark)
+    if programs is None or own.tied is None:
+
+        def free(oracle: Oracle) -> list[Pair]:
+            one, zero = oracle.numbers.one, oracle.numbers.zero
+            return pairs(oracle, {name: [one if x == name else zero for x in names] for name in names})
+
+        return compare(truth, CANONICAL, routes, free, chosen.states, chosen.remark)
+
+    def along_the_constraints(oracle: Oracle, basis: Sequence[Sequence[Scalar]]) -> list[Pair]:
+        return pairs(oracle, {str(k + 1): y for k, y in enumerate(basis)})
+
+    return _on_the_manifold(CANONICAL, routes, own, own.tied, programs, along_the_constraints)
 
 
-def check_routh(truth: Oracles, found: Routh) -> Check:
-    """R, c' and M_R s'' = f_R against sums over bodies in inertial axes, on the level of the momenta."""
+def _on_the_manifold(
+    name: str,
+    routes: tuple[str, str],
+    own: Independent,
+    tied: Constraints,
+    programs: ConstrainedPrograms,
+    pairs: Callable[[Oracle, Sequence[Sequence[Scalar]]], list[Pair]],
+) -> Check:
+    """Compares at states of the constrained motion; ``pairs`` takes displacements that are allowed there, too."""
+    from mbsym.mechanics.constraints.oracle import oracle_rows
+    from mbsym.problems.constraints.checks import compared_on_manifold, moving, null_space
+
+    def at(on_manifold: OnManifold) -> list[Pair]:
+        state = moving(own.form, on_manifold, tied, programs)
+        rows = [row.partials for rows in oracle_rows(own.form.system, state) for row in rows]
+        basis = null_space(rows, len(own.form.system.coordinates), state.numbers)
+        return pairs(Oracle(own.form.system, state), basis)
+
+    return compared_on_manifold(name, routes, own.form, programs, at)
+
+
+def check_routh(truth: Oracles, own: Independent, found: Routh, programs: ConstrainedPrograms | None = None) -> Check:
+    """R, c' and M_R s'' = f_R against sums over bodies in inertial axes, on the level of the momenta.
+
+    With constraints on their manifold, at the accelerations with multipliers, which M_R s'' = f_R has to have.
+    """
     ring = found.function.ring
     rows = zip(found.coordinates, found.mass_matrix, found.forcing, strict=True)
     lengths = {name: sum(x.terms for x in (*row, f)) for name, row, f in rows}
@@ -361,7 +612,8 @@ def check_routh(truth: Oracles, found: Routh) -> Check:
             compared.append((Message("the velocity of [[name]]", name=name), carry(rate.polynomial), velocity))
         compared.append(("R", carry(found.function.polynomial), function))
         compared.append((Message("the parts of R"), _by_parts(found, carry, state), function))
-        needed = _on_the_level(oracle, found)
+        zero = state.numbers.zero
+        needed = _on_the_level(oracle, found) if own.tied is None else dict.fromkeys(found.coordinates, zero)
         for i, name in enumerate(found.coordinates):
             if name in chosen.chosen:
                 total = -carry(found.forcing[i].polynomial)
@@ -372,13 +624,16 @@ def check_routh(truth: Oracles, found: Routh) -> Check:
         return compared
 
     routes = ("Routh, closed form", D_ALEMBERT)
-    return compare(truth, ROUTH, routes, pairs, chosen.states, chosen.remark)
+    if own.tied is None or programs is None:
+        return compare(truth, ROUTH, routes, pairs, chosen.states, chosen.remark)
+    return _on_the_manifold(ROUTH, routes, own, own.tied, programs, lambda oracle, _: pairs(oracle))
 
 
 def check_brackets(found: Brackets, canonical: Hamilton, scene: Scene) -> Check:
     """dF/dt along the canonical equations is zero, for every first integral F that problem 7 found."""
     ring = canonical.hamiltonian.ring
-    rates = [rate_along(canonical, scene, x.polynomial) for x in found.formulas]
+    form = SpeedForm(scene.system, ring)
+    rates = [form.in_angles(rate_along(canonical, scene, x.polynomial)) for x in found.formulas]
     outcomes = [how_equal(ring, [[rate]], [[ring.zero]]) for rate in rates]
     wrong = [name for name, outcome in zip(found.names, outcomes, strict=True) if outcome == FAILED]
     outcome = max(outcomes, key=tuple(HOW_EQUAL).index) if not wrong else FAILED

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from flint import arb, arb_mat, ctx, fmpq_mat
 
@@ -32,12 +32,19 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.programs import Programs
+from mbsym.mechanics.speed_states import all_slopes
 from mbsym.mechanics.states import SEED, Oracles
-from mbsym.model.system import INERTIAL, System, acceleration_name
+from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import BodyKinematics, Kinematics
 from mbsym.problems.linearisation import Linearisation
+
+if TYPE_CHECKING:
+    from mbsym.algebra.program import Node
+    from mbsym.mechanics.speed_programs import SpeedProgram
+    from mbsym.mechanics.speeds import SpeedForm
+    from mbsym.problems.in_speeds import SpeedEquations
 
 EXACT, NUMERICAL, UNDECIDED, FAILED = "exact", Certainty.VERIFIED, Certainty.UNDECIDED, "FAILED"
 #: Of the mass matrix: no route is wrong, the described system is degenerate.
@@ -227,65 +234,126 @@ D_ALEMBERT = Message("d'Alembert's principle in inertial axes")
 
 
 def check_equations(truth: Oracles, equations: Equations) -> Check:
-    """Lagrange's closed equations against d'Alembert's principle."""
-    names = truth.system.coordinates
-    rows = zip(names, equations.mass_matrix, equations.forcing, strict=True)
-    chosen = extent({name: sum(x.terms for x in (*row, f)) for name, row, f in rows}, Message("equations"))
+    """The closed equations, Lagrange's or Kane's with the kinematic ones, against d'Alembert's principle."""
+    speeds, own = _speeds(truth.system), cast("SpeedEquations", equations)
+    if equations.in_speeds:
+        speeds = dict(zip(own.speeds, own.speed_rates, strict=True))
+    rows = dict(zip(speeds, zip(equations.mass_matrix, equations.forcing, strict=True), strict=True))
+    chosen = extent({u: sum(x.terms for x in (*row, f)) for u, (row, f) in rows.items()}, Message("equations"))
 
     def pairs(oracle: Oracle) -> list[Pair]:
-        state = oracle.state
-        carry = Carrier(truth.ring, state.numbers, state.values)
-        needed = oracle.residuals
-        compared: list[Pair] = []
-        for i, name in enumerate(names):
-            if name not in chosen.chosen:
-                continue
-            total = -carry(equations.forcing[i].polynomial)
-            for j, other in enumerate(names):
-                entry = carry(equations.mass_matrix[i, j].polynomial)
-                total = total + entry * state.values[acceleration_name(other)]
-            compared.append((Message("equation [[name]]", name=name), total, needed[name]))
-        return compared
+        carry = Carrier(truth.ring, oracle.state.numbers, oracle.state.values)
+        mass = {u: [carry(x.polynomial) for x in rows[u][0]] for u in chosen.chosen}
+        errors = _errors(oracle, speeds, mass, {u: carry(rows[u][1].polynomial) for u in chosen.chosen})
+        if not equations.in_speeds:
+            return _against(oracle, speeds, errors, {})
+        rates = {name: carry(x.polynomial) for name, x in zip(own.positions, own.rates, strict=True)}
+        balance = {
+            u: carry(a.polynomial) - carry(b.polynomial)
+            for u, a, b in zip(speeds, own.needed, own.supplied, strict=True)
+        }
+        standing: list[Pair] = [
+            (Message("equation [[name]] as it stands", name=u), balance[u], error) for u, error in errors.items()
+        ]
+        return standing + _against(oracle, speeds, errors, rates)
 
-    routes = ("Lagrange, closed form", D_ALEMBERT)
+    routes = ("Kane, closed form" if equations.in_speeds else "Lagrange, closed form", D_ALEMBERT)
     return compare(truth, "equations of motion", routes, pairs, chosen.states, chosen.remark)
 
 
-def check_program(truth: Oracles, programs: Programs) -> Check:
-    """The straight-line program, and the general recursion it is a leaner form of, against d'Alembert's principle."""
-    names = truth.system.coordinates
+def check_program(truth: Oracles, programs: Programs, form: SpeedForm | None = None) -> Check:
+    """The straight-line program, and the general recursion it is a leaner form of, against d'Alembert's principle.
+
+    And the program in the speeds of ``form``.
+    """
+    names, speeds = truth.system.coordinates, _speeds(truth.system)
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         recursion = residuals(Scene(truth.system, state.numbers, state.values, truth.ring))
-        nodes = [node for row in programs.mass_matrix for node in row] + [*programs.forcing, programs.energy]
-        values = programs.program.evaluate(nodes, state.values, state.numbers)
-        needed = oracle.residuals
-        n = len(names)
-        compared: list[Pair] = [(Message("energy"), values[-1], oracle.energy_of_motion - oracle.force_function)]
-        for i, name in enumerate(names):
-            total = -values[n * n + i]
-            for j, other in enumerate(names):
-                total = total + values[i * n + j] * state.values[acceleration_name(other)]
-            compared.append((Message("equation [[name]]", name=name), total, needed[name]))
-            compared.append(
-                (Message("equation [[name]] of the general recursion", name=name), recursion[name], needed[name])
-            )
-        return compared
+        (energy,) = programs.program.evaluate([programs.energy], state.values, state.numbers)
+        compared: list[Pair] = [(Message("energy"), energy, oracle.energy_of_motion - oracle.force_function)]
+        for name in names:
+            label = Message("equation [[name]] of the general recursion", name=name)
+            compared.append((label, recursion[name], oracle.residuals[name]))
+        return [*compared, *_coded(truth, oracle, programs, speeds, {})]
 
     states = 1 if len(names) * len(truth.system.bodies) > MOST_DISPLACED else STATES
-    return compare(truth, "straight-line program", ("Newton-Euler recursion in body axes", D_ALEMBERT), pairs, states)
+    routes = ("Newton-Euler recursion in body axes", D_ALEMBERT)
+    checked = compare(truth, "straight-line program", routes, pairs, states)
+    if form is None or checked.failed:
+        return checked
+    from mbsym.mechanics.speed_programs import speed_program  # few systems have speeds of their own
+
+    code, own = speed_program(form), {u.name: u.rate_name for u in form.speeds}
+    rates = dict(zip((x.name for x in form.positions), code.rates, strict=True))
+    routes = ("Kane in body axes, straight-line", D_ALEMBERT)
+    in_speeds = compare(truth, "straight-line program", routes, lambda oracle: _coded(truth, oracle, code, own, rates))
+    return in_speeds if in_speeds.failed else checked
+
+
+# With  E_r = (M u' - f)_r  and the oracle's residual e_i of every coordinate, at the same state,
+#
+#     e_i = sum_r E_r du_r/dq'_i,
+#
+# du/dq' from the spins of the placed bodies (of u = q' it is 1); the kinematic equations s' = g(s, u) are compared with
+# the rates at that state.
+
+
+def _speeds(system: System) -> dict[str, str]:
+    """Generalised velocities, and what their rates are called."""
+    return {velocity_name(name): acceleration_name(name) for name in system.coordinates}
+
+
+def _coded(
+    truth: Oracles,
+    oracle: Oracle,
+    code: Programs | SpeedProgram,
+    speeds: Mapping[str, str],
+    rates: Mapping[str, Node],
+) -> list[Pair]:
+    """M, f and s' of a program, compared."""
+    n, masses = len(speeds), truth.masses(oracle, code)
+    values = code.program.evaluate([*code.forcing, *rates.values()], oracle.state.values, oracle.state.numbers)
+    mass = {u: masses[r * n : (r + 1) * n] for r, u in enumerate(speeds)}
+    errors = _errors(oracle, speeds, mass, dict(zip(speeds, values[:n], strict=True)))
+    return _against(oracle, speeds, errors, dict(zip(rates, values[n:], strict=True)))
+
+
+def _errors(
+    oracle: Oracle, speeds: Mapping[str, str], mass: Mapping[str, Sequence[Any]], forcing: Mapping[str, Any]
+) -> dict[str, Any]:
+    """(M u' - f)_r at the state, by the speeds of the rows that there are."""
+    errors = {}
+    for u, row in mass.items():
+        errors[u] = -forcing[u]
+        for entry, rate in zip(row, speeds.values(), strict=True):
+            errors[u] = errors[u] + entry * oracle.state.values[rate]
+    return errors
+
+
+def _against(
+    oracle: Oracle, speeds: Mapping[str, str], errors: Mapping[str, Any], rates: Mapping[str, Any]
+) -> list[Pair]:
+    """e_i against sum_r E_r du_r/dq'_i where all E_r that it takes are there, and s' against the rates at the state."""
+    state, columns = oracle.state, dict(zip(speeds, all_slopes(oracle, [*speeds]), strict=True))
+    compared: list[Pair] = []
+    for i, name in enumerate(oracle.system.coordinates):
+        slopes = {u: column[i] for u, column in columns.items() if not state.numbers.vanishes(column[i])}
+        if slopes.keys() <= errors.keys():
+            total = sum((errors[u] * slope for u, slope in slopes.items()), state.numbers.zero)
+            compared.append((Message("equation [[name]]", name=name), total, oracle.residuals[name]))
+    return compared + [(f"{name}'", rate, state.values[velocity_name(name)]) for name, rate in rates.items()]
 
 
 def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
     """det M is not zero: every coordinate, and every combination of them, carries inertia."""
     names = truth.system.coordinates
     n = len(names)
-    nodes = [node for row in programs.mass_matrix for node in row]
 
     def regular(oracle: Oracle) -> bool | None:
         """None where enclosures are too wide to tell."""
-        values = programs.program.evaluate(nodes, oracle.state.values, oracle.state.numbers)
+        values = truth.masses(oracle, programs)
         if any(isinstance(value, arb) for value in values):
             return None if arb_mat(n, n, [arb(value) for value in values]).det().contains(0) else True
         return bool(fmpq_mat(n, n, values).rank() == n)

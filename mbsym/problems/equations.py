@@ -4,19 +4,19 @@
 
     f_i = dT/dq_i + dU/dq_i + Q_i - sum_j q'_j d(dT/dq'_i)/dq_j - sum_x rate_x d(dT/dq'_i)/dx - d(dT/dq'_i)/dt
 
-With constraints (``mbsym.problems.constraints``) these are the equations of the open tree, and constraint forces join
-them:  M q'' = f + J^T lambda,  J q'' + gamma = 0;  without multipliers  Y^T M Y u' = Y^T (f - M a0).
+where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.  With
+constraints (``mbsym.problems.constraints``) these are the equations of the open tree, and constraint forces join them:
+M q'' = f + J^T lambda,  J q'' + gamma = 0;  without multipliers  Y^T M Y u' = Y^T (f - M a0).
 
-where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.
-
-Other forms (``mbsym run --form routh,hamilton``; ``canonical``), of systems without constraints:
+Other forms (``mbsym run --form routh,hamilton``; ``canonical``):
 
     Routh:     R = L - beta.c' of the coordinates s, the momenta beta of the cyclic coordinates c being constants where
                no other force acts on c;  M_R s'' = f_R;  R = 1/2 s'.M_R s' + b.s' - W with the reduced potential W
     Hamilton:  p = dL/dq',  H = p.q' - L,  q' = dH/dp,  p' = -dH/dq + Q;  Poisson brackets {F_i, F_j} of the integrals
                of problem 7
 
-Forces Q without a force function stay in both.  Of a system in speeds they are told in generalised coordinates.
+Forces Q without a force function stay in both.  Under constraints both are told in the velocities that these leave, on
+their manifold (Routh's where they are integrable), Hamilton's in the speeds of a system that has its own.
 
 Source: Banshchikov & Vetrov, Problem 3.
 

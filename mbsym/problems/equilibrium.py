@@ -24,17 +24,14 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from flint import fmpq, fmpq_mat
-
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.jet import Jet
-from mbsym.algebra.matrices import null_vectors, reduced_rows
-from mbsym.algebra.point import Rationals
+from mbsym.algebra.matrices import null_space_of_rationals
 from mbsym.algebra.rationals import exact, fraction
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
@@ -127,36 +124,25 @@ def equilibrium(
     )
 
 
-def singular_displacements(expanded: Scene[Jet]) -> tuple[Displacement, ...]:
-    """Displacements that move nothing with mass or load on the motion, but do beside it (the scene over jets there).
+def singular_displacements(first: Scene[Jet], expanded: Callable[[], Scene[Jet]]) -> tuple[Displacement, ...]:
+    """Displacements that move nothing with mass or load on the motion, but do beside it.
 
-    Those with rational parts; none of coordinates on which loads act directly: such a load is no load on bodies there.
+    ``first`` is the scene over jets there, of any order; ``expanded``, of second order, is asked for only where
+    something rests.  Those with rational parts; none of coordinates on which loads act directly: such a load is no
+    load on bodies there.
     """
-    system, n = expanded.system, len(expanded.system.coordinates)
-    loaded = {name for load in system.loads for name in load.bodies or ()}
+    system, n = first.system, len(first.system.coordinates)
     held = {name for load in system.loads for name in load.coordinates}
     for load in system.loads:
         if isinstance(load, ForceFunction | Rayleigh):
             inside = names(load.expression)
             held |= {x for x in system.coordinates if not inside.isdisjoint((x, velocity_name(x)))}
-    felt: list[Jet] = []
-    for name, motion in expanded.motions.items():
-        if name in loaded or motion.gyrostatic_moment is not None:
-            felt += [*motion.velocity_origin, *motion.angular_velocity]
-        elif not motion.mass.value.is_zero() or motion.mass.parts:
-            felt += motion.velocity_mass_centre
-        if motion.inertia is not None:
-            felt += motion.inertia @ motion.angular_velocity
     free = [name for name in system.coordinates if name not in held]
-    places = [n + system.coordinates.index(name) for name in free]
-    zero = expanded.ring.zero
-    rows: dict[Any, list[Any]] = {}
-    for at, x in enumerate(felt):
-        slopes = x.first
-        for column_, k in enumerate(places):
-            for monomial, c in slopes[k].terms() if k in slopes else ():
-                rows.setdefault((at, monomial), [fmpq(0)] * len(free))[column_] = c
-    reduced = reduced_rows(fmpq_mat(len(rows), len(free), [c for row in rows.values() for c in row]))
+    places = {n + system.coordinates.index(name): column_ for column_, name in enumerate(free)}
+    resting = null_space_of_rationals(_slopes(first, places), len(free))
+    if not resting:
+        return ()
+    zero, felt = first.ring.zero, list(_felt(expanded()))
 
     def moves(parts: Sequence[Any]) -> bool:
         """Whether it moves something beside the motion."""
@@ -169,9 +155,33 @@ def singular_displacements(expanded: Scene[Jet]) -> tuple[Displacement, ...]:
 
     return tuple(
         tuple((name, fraction(part)) for name, part in zip(free, parts, strict=True) if part)
-        for parts in null_vectors(Rationals({}, {}), reduced, len(free))
+        for parts in resting
         if moves(parts)
     )
+
+
+def _felt(scene: Scene[Jet]) -> Iterator[Jet]:
+    """The velocities that something with mass or load has, body by body."""
+    loaded = {name for load in scene.system.loads for name in load.bodies or ()}
+    for name, motion in scene.motions.items():
+        if name in loaded or motion.gyrostatic_moment is not None:
+            yield from (*motion.velocity_origin, *motion.angular_velocity)
+        elif not motion.mass.value.is_zero() or motion.mass.parts:
+            yield from motion.velocity_mass_centre
+        if motion.inertia is not None:
+            yield from motion.inertia @ motion.angular_velocity
+
+
+def _slopes(scene: Scene[Jet], places: Mapping[int, int]) -> Iterator[dict[int, Any]]:
+    """Rows of numbers, by columns, whose products with the rates at ``places`` are what is felt to first order."""
+    for x in _felt(scene):
+        rows: dict[tuple[int, ...], dict[int, Any]] = {}
+        for k, slope in x.first.items():
+            if k in places:
+                constant = slope.is_constant()  # in a large ring exponents are long
+                for monomial, c in [((), slope.leading_coefficient())] if constant else slope.terms():
+                    rows.setdefault(monomial if any(monomial) else (), {})[places[k]] = c
+        yield from rows.values()
 
 
 def beside(

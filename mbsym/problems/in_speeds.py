@@ -1,4 +1,4 @@
-"""Problems 3 and 7, and their self-check, in velocities of their own: speeds u with q' = Y(q) u + y0(q, t).
+"""Problems 3 and 7 in velocities of their own: speeds u with q' = Y(q) u + y0(q, t).
 
     M u' = f                                            Kane's equations (equally Boltzmann-Hamel)
     s' = g(s, u, t)                                     kinematic equations
@@ -17,29 +17,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.oracle import Oracle
-from mbsym.mechanics.speed_programs import speed_program
-from mbsym.mechanics.speed_states import all_slopes
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion
-from mbsym.model.system import velocity_name
-from mbsym.problems.checks import D_ALEMBERT, STATES, Check, Pair, compare
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.integrals import ENERGY, Integral, is_independent, momentum_title, whole_momenta
+from mbsym.problems.integrals import ENERGY, Integral, momentum_title, whole_momenta
 
 
 @dataclass(frozen=True, repr=False)
@@ -131,14 +121,7 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
     )
 
 
-# Problem 7 in speeds u and positions s: what is constant on every motion of  M u' = f,  s' = g.
-#
-# An expression I(s, u, t) is an integral if
-#
-#     det(M) (dI/dt + grad_s I . g) + grad_u I . adj(M) f  =  0,
-#
-# an identity of the ring, in which unit vectors are orthonormal (their components in terms of angles take their place
-# before zero is decided).  Tried are
+# Problem 7 in speeds u and positions s: what may be constant on every motion of  M u' = f,  s' = g.  Tried are
 #
 # * Jacobi's  H = sum (u_r - s0_r) dT/du_r - T - U  with  u = S q' + s0: T_2 - T_0 - U where nothing moves as
 #   prescribed;
@@ -154,73 +137,6 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
 
 
 GEOMETRIC, NORM, SPEED_MOMENTUM = "unit vectors", "quaternion", "speed momentum"
-
-
-def rate(form: SpeedForm, determinant: Polynomial, scaled: Sequence[Polynomial], x: Polynomial) -> Polynomial:
-    """D dx/dt where s' = g and D u' = ``scaled``."""
-    ring = form.ring
-    total = ring.times(determinant, form.drift(x))
-    for u, own in zip(form.speeds, scaled, strict=True):
-        slope = ring.derivative(x, u.name)
-        if not ring.vanishes(slope):
-            total = total + ring.times(slope, own)
-    return total
-
-
-@dataclass(frozen=True)
-class Field:
-    """The vector field of a system in speeds: s' = g, u' = M^-1 f."""
-
-    form: SpeedForm
-    equations: Equations
-
-    @cached_property
-    def determinant(self) -> Polynomial:
-        return determinant(self.form.ring, self.equations.mass_matrix.polynomials)
-
-    @cached_property
-    def scaled(self) -> list[Polynomial]:
-        """det(M) u' by Cramer's rule."""
-        forcing = [x.polynomial for x in self.equations.forcing]
-        return cramer(self.form.ring, self.equations.mass_matrix.polynomials, forcing)
-
-    def rate(self, x: Polynomial) -> Polynomial:
-        """det(M) dx/dt on the motion."""
-        return self.form.ring.reduce(rate(self.form, self.determinant, self.scaled, x))
-
-    def keeps(self, x: Polynomial) -> bool | None:
-        """Whether dx/dt = 0 on every motion; None where the ring cannot decide."""
-        return self.form.vanishes(self.rate(x))
-
-    def combines(self, x: Polynomial, multipliers: Sequence[Polynomial]) -> bool | None:
-        """Whether dx/dt = sum mu_r (M u' - f)_r with these multipliers, as polynomials in u', too: no inverse of M."""
-        ring, rows = self.form.ring, [x.polynomial for x in self.equations.equalities(())]
-        return self.form.vanishes(ring.reduce(self.form.rate(x) - ring.dot(multipliers, rows)))
-
-    def rate_in_lowest_terms(self, x: Polynomial) -> Formula:
-        """dx/dt on the motion."""
-        ring = self.form.ring
-        return Formula(ring, ring.ratio(self.rate(x), self.determinant))
-
-
-def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> tuple[Integral, ...]:
-    """All first integrals of the kinds above, each proved."""
-    ring = form.ring
-    field = Field(form, equations)
-    found: list[Integral] = []
-    known: list[Polynomial] = []
-    for integral, multipliers in candidates(form, scene, energy, equations):
-        x = integral.formula.polynomial
-        geometric = integral.kind in (GEOMETRIC, NORM)
-        with suppress(Failure):  # what is too long is not known to be conserved
-            proved = bool(multipliers) and field.combines(x, multipliers) is True
-            if (proved or field.keeps(x) is True) and (geometric or is_new(form, x, known)):
-                found.append(integral)
-                if integral.kind not in (ENERGY, GEOMETRIC, NORM):
-                    known.append(x)
-    assert all(x.formula.ring is ring for x in found)
-    return tuple(found)
-
 
 Candidate = tuple[Integral, Sequence[Polynomial]]
 
@@ -276,79 +192,3 @@ def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> 
     if kind != NORM:
         x = min(x, form.of_unit_quaternions(x), key=len)
     return Integral(name, kind, of, Formula(form.ring, x), Certainty.PROVED)
-
-
-def is_new(form: SpeedForm, x: Polynomial, known: Sequence[Polynomial]) -> bool:
-    """Whether it depends on the state, and is no combination of the others."""
-    ring, on = form.ring, form.in_angles(x)
-    state = [*form.system.coordinates, *(u.name for u in form.speeds)]
-    return bool(ring.dependencies(on, state)) and is_independent(ring, on, list(map(form.in_angles, known)))
-
-
-# The self-check of equations in speeds: against d'Alembert's principle, through velocities of the placed bodies.
-#
-# With E_r = (M u' - f)_r and the oracle's residual e_i of every coordinate, at the same state,
-#
-#     e_i = sum_r E_r du_r/dq'_i,
-#
-# du/dq' from the spins of the bodies; the kinematic equations s' = g(s, u) are compared with the rates at that state.
-
-
-def check_equations(truth: Oracles, found: SpeedEquations) -> Check:
-    """Kane's closed equations and the kinematic ones against d'Alembert's principle."""
-
-    def pairs(oracle: Oracle) -> list[Pair]:
-        state = oracle.state
-        carry = Carrier(truth.ring, state.numbers, state.values)
-        mass = [[carry(entry.polynomial) for entry in row] for row in found.mass_matrix]
-        errors = _errors(oracle, found.speed_rates, mass, [carry(x.polynomial) for x in found.forcing])
-        balance = [carry(a.polynomial) - carry(b.polynomial) for a, b in zip(found.needed, found.supplied, strict=True)]
-        names = [Message("equation [[name]] as it stands", name=u) for u in found.speeds]
-        rates = [carry(x.polynomial) for x in found.rates]
-        compared: list[Pair] = list(zip(names, balance, errors, strict=True))
-        return compared + _against(oracle, found.speeds, found.positions, errors, rates)
-
-    return compare(truth, "equations of motion", ("Kane, closed form", D_ALEMBERT), pairs, STATES)
-
-
-def check_program(truth: Oracles, form: SpeedForm) -> Check:
-    """The straight-line program in speeds against d'Alembert's principle."""
-    code = speed_program(form)
-    n = len(form.speeds)
-    nodes = [*(x for row in code.mass_matrix for x in row), *code.forcing, *code.rates]
-    speeds = [u.name for u in form.speeds]
-
-    def pairs(oracle: Oracle) -> list[Pair]:
-        values = code.program.evaluate(nodes, oracle.state.values, oracle.state.numbers)
-        mass = [values[r * n : (r + 1) * n] for r in range(n)]
-        forcing, rates = values[n * n : n * n + n], values[n * n + n :]
-        errors = _errors(oracle, [u.rate_name for u in form.speeds], mass, forcing)
-        return _against(oracle, speeds, [x.name for x in form.positions], errors, rates)
-
-    return compare(truth, "straight-line program", ("Kane in body axes, straight-line", D_ALEMBERT), pairs, STATES)
-
-
-def _errors(oracle: Oracle, rates: Sequence[str], mass: Sequence[Sequence[Any]], forcing: Sequence[Any]) -> list[Any]:
-    """(M u' - f)_r at the state."""
-    errors = []
-    for row, force in zip(mass, forcing, strict=True):
-        total = -force
-        for entry, rate in zip(row, rates, strict=True):
-            total = total + entry * oracle.state.values[rate]
-        errors.append(total)
-    return errors
-
-
-def _against(
-    oracle: Oracle, speeds: Sequence[str], positions: Sequence[str], errors: Sequence[Any], rates: Sequence[Any]
-) -> list[Pair]:
-    """e_i against sum_r E_r du_r/dq'_i, and s' against the rates at the state."""
-    state, system = oracle.state, oracle.system
-    columns, zero = all_slopes(oracle, speeds), state.numbers.zero
-    compared: list[Pair] = []
-    for i, name in enumerate(system.coordinates):
-        total = sum((e * column[i] for e, column in zip(errors, columns, strict=True)), zero)
-        compared.append((Message("equation [[name]]", name=name), total, oracle.residuals[name]))
-    for position, rate in zip(positions, rates, strict=True):
-        compared.append((f"{position}'", rate, state.values[velocity_name(position)]))
-    return compared

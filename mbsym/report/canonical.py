@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.forms import BRACKETS, requested_forms
 from mbsym.formulas.formula import Formula, Matrix
@@ -123,7 +124,10 @@ def _named(
     if not long or len(long) > len(names):
         return results, []
     letters = [ring.generator("parameter", name) for name in names[: len(long)]]
-    inverse = {index: ring.reciprocal(letter) for index, letter in zip(long, letters, strict=True)}
+    try:
+        inverse = {index: ring.reciprocal(letter) for index, letter in zip(long, letters, strict=True)}
+    except NoClosedForm:  # the ring has no room for more
+        return results, []
     definitions = [
         (Formula(ring, letter), Formula(ring, ring.generators[index].argument))
         for index, letter in zip(long, letters, strict=True)

@@ -21,7 +21,7 @@ from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of
 from mbsym.simulation.request import Request, wrong_with
 from mbsym.simulation.result import Simulation
-from mbsym.simulation.run import PLANNING, Stage, prepared, simulate
+from mbsym.simulation.run import PLANNING, Recall, Stage, anew, prepared, simulate
 from mbsym.simulation.sampling import sample_times
 
 #: A run that its estimate finds too coarse is repeated with so much finer a setting, so many times at most.
@@ -65,8 +65,9 @@ def plan_for(
     accuracy: Accuracy,
     pins: Pins = FREE,
     watch: Callable[[str], None] = lambda text: None,
+    recall: Recall = anew,
 ) -> tuple[Plan, Request]:
-    """The plan, and the request that repeats its run without choosing anything.
+    """The plan, measured or recalled, and the request that repeats its run without choosing anything.
 
     Raises ValueError for a request that cannot be met, Breakdown where the motion does not come to the end, Failure.
     """
@@ -76,7 +77,8 @@ def plan_for(
     begun = prepared(scenario, replace(request, model=Model()))[0]
     frequency = rates(dynamics_of(begun))[1]
     times = sample_times(replace(request, step=None, store=None), frequency, begun.system)
-    plan = planned(begun, accuracy, times, replace(pins, whole=request.whole, longest=request.longest), watch)
+    pins = replace(pins, whole=request.whole, longest=request.longest)
+    plan = recall("plan", scenario, request, (accuracy, pins), lambda: planned(begun, accuracy, times, pins, watch))
     rows = None if request.every is not None else len(times)
     settled = replace(
         request,
@@ -98,13 +100,14 @@ def simulate_accurately(
     watch: Callable[[float], None] = lambda t: None,
     stage: Stage = lambda what: nullcontext(),
     tried: Callable[[str], None] = lambda text: None,
+    recall: Recall = anew,
 ) -> Simulation:
     """The run of a plan.  Where its own estimate says that the accuracy is missed, a finer one, and a remark."""
     # Who asks for an accuracy asks whether it is kept.
     request = replace(request, estimate=request.estimate is not False)
     with stage(PLANNING):
-        plan, settled = plan_for(scenario, request, accuracy, pins, tried)
-    run = simulate(scenario, settled, watch, stage)
+        plan, settled = plan_for(scenario, request, accuracy, pins, tried, recall)
+    run = simulate(scenario, settled, watch, stage, recall)
     for again in range(REPEATS + 1):
         finer = _finer(plan)
         last = again == REPEATS or pins.setting is not None or finer == plan.setting
@@ -117,7 +120,7 @@ def simulate_accurately(
         missed = Message("[[missed]]: repeated more finely", missed=missed)
         plan = replace(plan, setting=finer, remarks=(*plan.remarks, missed))
         settled = replace(settled, tolerance=plan.setting.tolerance, step=plan.setting.step)
-        run = simulate(scenario, settled, watch, stage)
+        run = simulate(scenario, settled, watch, stage, recall)
     if isinstance(run.error, NoEstimate) and run.error.why in UNSHOWN:
         plan = replace(plan, unshown=run.error.why)
     plan = replace(plan, bounds=tuple(_proved(bound, run) for bound in _raised(plan, run)))

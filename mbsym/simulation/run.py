@@ -14,7 +14,7 @@ from collections.abc import Callable, Collection
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints
@@ -43,7 +43,7 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.models import LinearisedDynamics, droppable, scenario_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import reduced
-from mbsym.numerics.planning.sizes import kinetic_between
+from mbsym.numerics.planning.sizes import kinetic_between, kinetic_rounding
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of, state_names
 from mbsym.numerics.watched import between_rows, nearest_to_singular
@@ -73,14 +73,28 @@ PLANNING = "planning"
 #: Is told what is being done, for as long as it takes.
 Stage = Callable[[str], AbstractContextManager[object]]
 
+T = TypeVar("T")
+
+
+class Recall(Protocol):
+    """``measure()``, or what an earlier command measured: ``what``, of the same scenario, request and ``how``."""
+
+    def __call__(self, what: str, scenario: Scenario, request: Request, how: object, measure: Callable[[], T]) -> T: ...
+
+
+def anew(what: str, scenario: Scenario, request: Request, how: object, measure: Callable[[], T]) -> T:
+    """Nothing was measured before."""
+    return measure()
+
 
 def simulate(
     scenario: Scenario,
     request: Request,
     watch: Callable[[float], None] = lambda t: None,
     stage: Stage = lambda what: nullcontext(),
+    recall: Recall = anew,
 ) -> Simulation:
-    """Integrates a scenario.
+    """Integrates a scenario; its error is estimated, or recalled.
 
     What ends a run early (a blow-up, a singular mass matrix, a step limit, Ctrl-C) is part of the result.  Raises
     ValueError for a request that cannot be met (NoEvent: a condition without a value), Unusable where the method asked
@@ -110,7 +124,9 @@ def simulate(
     happened = None
     if watching is not None:
         motion, happened = watching.happened(motion)
-    motion = replace(motion, between=motion.between or kinetic_between(dynamics, motion, chosen.completed))
+    between = motion.between or kinetic_between(dynamics, motion, chosen.completed)
+    begin = float(motion.times[0]), motion.states[:, 0]
+    motion = replace(motion, between=between, rounding=kinetic_rounding(dynamics, *begin))
     error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if motion.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
         held = resting.names if resting is not None and resting.proved else ()
@@ -122,7 +138,9 @@ def simulate(
         own = cost(dynamics, motion.method, request.arithmetic, motion.work)
         if motion.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
             limit = inf if request.estimate else max(LEAST, AT_MOST * own)
-            error = estimated(dynamics, motion, chosen.method, request.arithmetic, chosen.completed, limit)
+            how = dynamics, motion, chosen.method, request.arithmetic, chosen.completed, limit
+            known = recall if request.estimate else anew  # to look for a short one takes longer than to make it
+            error = known("estimate", original, request, None, lambda: estimated(*how))
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
         error = NoEstimate(Lacking.CONTRADICTED)
     certificate = None

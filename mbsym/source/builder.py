@@ -16,7 +16,7 @@ from mbsym.expressions.tree import Expression
 from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import Constraint
 from mbsym.model.inputs import Input, Output
-from mbsym.model.substitution import with_held
+from mbsym.model.substitution import in_coordinates, with_held
 from mbsym.model.system import INERTIAL, Body, MotionEntry, System
 from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system, in_formulas
@@ -46,7 +46,7 @@ from mbsym.source.settings import (
     read_relations,
     read_small,
 )
-from mbsym.source.speeds import check_speeds, constraint_in_coordinates, declare_speeds, in_coordinates, read_speeds
+from mbsym.source.speeds import check_speeds, constraint_in_coordinates, declare_speeds, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.constants import out_of_range
 from mbsym.expressions.parser import names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span, in_line
-from mbsym.expressions.tree import KINKED, Expression, number
-from mbsym.source.scope import Allowed, Scope
+from mbsym.expressions.tree import Expression, number
+from mbsym.model.speeds import Quaternion
+from mbsym.source.scope import FORCE, Allowed, Scope
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
 
-LAW = Allowed("the law of an input", ("coordinate", "velocity", "prescribed", "parameter", "time"), KINKED)
+#: What a force may hold, but for other inputs.
+LAW = Allowed("the law of an input", tuple(kind for kind in FORCE.kinds if kind != "input"), FORCE.kinked)
 
 
 #: A motion is differentiated twice.
@@ -26,7 +28,7 @@ MOTION = Allowed("a motion", ("prescribed", "parameter", "time"))
 def read_law(
     text: str, system: System, complaints: Complaints, place: Callable[[int, int], Span], allowed: Allowed = LAW
 ) -> Expression | None:
-    """A formula in t, coordinates, velocities, parameters and tables of the description; None after a complaint."""
+    """A formula in what the description's forces may hold, inputs excepted; None after a complaint."""
     scope = _scope(system, complaints)
     before = len(complaints.items)
     tree = parse_expression(text, complaints, place, True, tables=scope.tables)
@@ -38,7 +40,7 @@ def read_law(
 
 
 def read_laws(system: System, laws: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
-    """Laws of inputs by name as expressions in t, coordinates, velocities, parameters and tables of the description.
+    """Laws of inputs by name as expressions in what the description's forces may hold, inputs excepted.
 
     Raises ValueError with everything that is wrong.
     """
@@ -87,4 +89,7 @@ def _scope(system: System, complaints: Complaints) -> Scope:
     kinds = dict.fromkeys(system.parameter_names, "parameter") | dict.fromkeys(system.coordinates, "coordinate")
     kinds |= {item.name: "prescribed" for item in system.prescribed}
     kinds |= {item.name: "notation" for item in system.notation} | dict.fromkeys(system.input_names, "input")
+    kinds |= {speed.name: "speed" for speed in system.speeds}
+    for vector in (vector for body in system.bodies for vector in body.orientation):
+        kinds |= dict.fromkeys(vector.components, "quaternion" if isinstance(vector, Quaternion) else "unit vector")
     return Scope(complaints, kinds, tables={table.name: table for table in system.tables})

@@ -217,6 +217,8 @@ class Reading:
         scalar = self.scalar(node, allowed.what)
         if scalar is None:
             return ZERO
+        if self.scope.holds_no_name(scalar.text):
+            return ZERO
         before = len(self.complaints.items)
         named = bool(allowed.kinds)
         tables = self.scope.tables if named else NO_TABLES

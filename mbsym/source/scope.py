@@ -165,6 +165,11 @@ class Scope:
             )
         return reason is None
 
+    def holds_no_name(self, text: str) -> bool:
+        """Whether a formula has something for a name that was declared, complained about, and cannot be read."""
+        unread = [name for name in self.assumed if not name.isidentifier()]
+        return any(re.search(rf"(?<![\w.]){re.escape(name)}(?!\w)", text) for name in unread)
+
     def of_kind(self, *kinds: str) -> list[str]:
         return [name for name, kind in self.kinds.items() if kind in kinds]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 from mbsym.expressions.message import Message
@@ -12,23 +12,17 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import (
-    ONE,
     ZERO,
-    Call,
     Expression,
     Name,
-    add,
     differentiate,
-    multiply,
     names,
-    negative,
     substitute,
 )
 from mbsym.model.constraints import Constraint, Relation, Rolling, Velocity, as_written
-from mbsym.model.loads import Load
 from mbsym.model.speeds import OMEGA, QUATERNION, Quaternion, Speed, UnitVector
-from mbsym.model.substitution import folded, put
-from mbsym.model.system import INERTIAL, Body, System, Vector, velocity_name
+from mbsym.model.substitution import angular_velocity, folded, held_names, speeds_in_coordinates
+from mbsym.model.system import INERTIAL, Body, System, velocity_name
 from mbsym.source import placed
 from mbsym.source.bodies import Draft, read_body_name
 from mbsym.source.identity import independent, vanishes
@@ -219,30 +213,6 @@ def _row(system: System, speed: Speed, ordered: Sequence[str]) -> list[Expressio
     return row
 
 
-def angular_velocity(system: System, body: str) -> Vector:
-    """omega of a body in its own axes, as expressions:  w <- C_a(x) w + x' e_a  turn by turn."""
-    spin: list[Expression] = [ZERO, ZERO, ZERO]
-    for name in system.path(body)[1:]:
-        for axis, angle in system.body(name).rotation.turns():
-            spin = _turned(spin, axis, angle)
-            for coordinate in system.coordinates:
-                slope = differentiate(angle, coordinate)
-                spin[axis - 1] = add(spin[axis - 1], multiply(slope, Name(velocity_name(coordinate))))
-            for item in system.prescribed:
-                spin[axis - 1] = add(spin[axis - 1], multiply(differentiate(angle, item.name), item.rate))
-            spin[axis - 1] = add(spin[axis - 1], differentiate(angle, "t"))
-    return spin[0], spin[1], spin[2]
-
-
-def in_coordinates(load: Load, system: System) -> Load:
-    """A load of speeds and unit vectors as one of coordinates and velocities, with what was written beside.
-
-    e = C_a3 C_a2 C_a1 e_axis;  u = S q' + s0.
-    """
-    images = _in_coordinates(_held(load), system)
-    return replace(put(load, images, folded), as_written=load) if images else load
-
-
 def constraint_in_coordinates(constraint: Constraint, system: System) -> Constraint:
     """The same of a relation, between velocities, too, and of a point of contact."""
     if isinstance(constraint, Relation | Velocity):
@@ -251,46 +221,13 @@ def constraint_in_coordinates(constraint: Constraint, system: System) -> Constra
         written = constraint.contact
     else:
         return constraint
-    images = _in_coordinates({name for x in written for name in names(x)}, system)
+    images = speeds_in_coordinates({name for x in written for name in names(x)}, system)
     if not images:
         return constraint
     made = [folded(x, images) for x in written]
     if isinstance(constraint, Rolling):
         return replace(constraint, contact=(made[0], made[1], made[2]), in_vectors=written)
     return replace(constraint, left=made[0], right=made[1], in_vectors=written)
-
-
-def _in_coordinates(held: Collection[str], system: System) -> dict[str, Expression]:
-    """The speeds and the components of unit vectors that are ``held``, in coordinates and velocities."""
-    images = _in_angles(held, system.bodies)
-    for speed in system.speeds:
-        if speed.name in held:
-            spin = angular_velocity(system, speed.body) if speed.turns else ()
-            images[speed.name] = substitute(speed.form, dict(zip(OMEGA, spin, strict=False)))
-    return images
-
-
-def _in_angles(held: Collection[str], bodies: Sequence[Body]) -> dict[str, Expression]:
-    """The unit vectors that are ``held`` by their components, as functions of angles."""
-    images = dict[str, Expression]()
-    for body in bodies:
-        for vector in body.orientation:
-            if isinstance(vector, UnitVector) and {*vector.components} & {*held}:
-                columns: list[Expression] = [ONE if axis == vector.axis else ZERO for axis in (1, 2, 3)]
-                for axis, angle in body.rotation.turns():
-                    columns = _turned(columns, axis, angle)
-                images |= dict(zip(vector.components, columns, strict=True))
-    return images
-
-
-def _turned(v: Sequence[Expression], axis: int, angle: Expression) -> list[Expression]:
-    """C_a(x) v."""
-    i, j = axis % 3, (axis + 1) % 3
-    s, c = Call("sin", angle), Call("cos", angle)
-    turned = list(v)
-    turned[i] = add(multiply(c, v[i]), multiply(s, v[j]))
-    turned[j] = add(multiply(c, v[j]), negative(multiply(s, v[i])))
-    return turned
 
 
 def _check_orientation(system: System, body: Body, draft: Draft, reading: Reading) -> None:
@@ -330,8 +267,8 @@ _LOAD, _FORCE = "a load", "a load on bodies"
 
 def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     """Names in other places than the angles of a body's joint, with these places."""
-    uses = [(name, _FORCE if load.bodies else _LOAD) for load in system.loads for name in _held(load.written)]
-    uses += [(name, "a constraint") for constraint in system.constraints for name in _held(as_written(constraint))]
+    uses = [(name, _FORCE if load.bodies else _LOAD) for load in system.loads for name in held_names(load.written)]
+    uses += [(name, "a constraint") for constraint in system.constraints for name in held_names(as_written(constraint))]
     uses += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:
         if other is not body:
@@ -342,18 +279,3 @@ def _uses(system: System, body: Body) -> list[tuple[str, str]]:
             held = {without_velocity(name) for name in names(speed.form)}
             uses += [(name, Message("the speed '[[name]]'", name=speed.name)) for name in held]
     return uses
-
-
-def _held(load: object) -> set[str]:
-    """The coordinates in a load, by name or in an expression, velocities among them."""
-    held: set[str] = set()
-    pending: list[object] = [load]
-    while pending:
-        part = pending.pop()
-        if isinstance(part, str):
-            held.add(without_velocity(part))
-        elif isinstance(part, tuple):
-            pending.extend(part)
-        elif is_dataclass(part):
-            pending.extend(getattr(part, field.name) for field in fields(part) if field.name != "span")
-    return held

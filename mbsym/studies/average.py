@@ -11,6 +11,7 @@ from mbsym.studies.request import Named, Names, Number
 from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Unfit, Watch, failed, refused
 
 if TYPE_CHECKING:
+    from mbsym.analysis.small import Averaging
     from mbsym.model.system import System
     from mbsym.problems.small_parameter.averaging import Averaged
     from mbsym.simulation.expanded import Measured
@@ -131,14 +132,19 @@ def _withdrawn(system: System, average: Averaged, measured: Measured | str) -> s
 
 
 def answer(context: Asked, request: Request, derived: Found) -> Answer:
-    from mbsym.analysis import Analysis
-    from mbsym.analysis.small import Averaging
     from mbsym.report.content import ragged
     from mbsym.report.words.expansion_measured import JudgedAverage
     from mbsym.report.words.expansion_words import of_averaging
 
-    averaging = Averaging(derived.averaged.phases, derived.averaged, Analysis(derived.system, (6,)))
-    return Answer(map(ragged, of_averaging(JudgedAverage(averaging, derived.measured, False))))
+    return Answer(map(ragged, of_averaging(JudgedAverage(_judged(derived), derived.measured, False))))
+
+
+def _judged(derived: Found) -> Averaging:
+    """With what problem 6 says of the averaged motion."""
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.small import Averaging
+
+    return Averaging(derived.averaged.phases, derived.averaged, Analysis(derived.system, (6,)))
 
 
 def document(context: Asked, request: Request, derived: Found) -> Document:
@@ -161,7 +167,13 @@ def as_json(context: Asked, request: Request, derived: Found) -> str:
     from mbsym.report.documents.expansion import Average
     from mbsym.report.expansion_json import measured_data
 
-    return file_of(Average, context.system, derived.averaged, measured=measured_data(derived.measured))
+    return file_of(
+        Average,
+        context.system,
+        derived.averaged,
+        averaged_motion_at_values=_judged(derived).word_at_values,
+        measured=measured_data(derived.measured),
+    )
 
 
 STUDY = Study(

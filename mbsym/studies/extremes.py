@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message
 from mbsym.model.constraints import listed
 from mbsym.studies.closing import closed_motion, not_closed
-from mbsym.studies.request import Flag, Number, Values
-from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, failed
+from mbsym.studies.request import Anew, Flag, Number, Values
+from mbsym.studies.study import BEFORE, Answer, Asked, Folder, Refusal, Study, Unfit, Watch, failed
 
 if TYPE_CHECKING:
     from mbsym.numerics.extremes.extremes import Extremes
@@ -45,6 +45,7 @@ class Request:
     values: Values = field(default_factory=dict)
     sequences: Annotated[bool, Flag(None, "Rank the 12 rotation sequences of each body instead.")] = False
     budget: Annotated[float, Number("S", "Counted work, worth some S seconds.")] = 60.0
+    anew: Anew = False
 
 
 def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
@@ -60,10 +61,11 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
 
 @dataclass(frozen=True)
 class Measured:
-    """Digits at the extremes; ``notes``: how the initial state was led to the constraints."""
+    """Digits at the extremes, ``before`` if by an earlier command; ``notes``: how the state was led to constraints."""
 
     extremes: Extremes
     notes: tuple[str, ...]
+    before: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,12 @@ def derive(context: Asked, request: Request, watch: Watch) -> Measured | Ranked:
 
     scenario, notes = closed_motion(context.motion)
     values = read_values(context.system, request.values)
-    return Measured(extremes(scenario, ring_of(scenario.system), values, request.budget, watch), notes)
+
+    def measure() -> Extremes:
+        return extremes(scenario, ring_of(scenario.system), values, request.budget, watch)
+
+    found, before = context.measured("extremes", scenario, (values, request.budget), measure, request.anew)
+    return Measured(found, notes, before)
 
 
 def _ranked(scenario: Scenario, watch: Watch) -> Ranked:
@@ -114,7 +121,8 @@ def answer(context: Asked, request: Request, derived: Measured | Ranked) -> Answ
     brief = [paragraph("- ", text) for text in sentences(measured, context.file)]
     left = (Message("left out: [[what]]", what=text) for text in measured.left_out)
     brief += [paragraph("- ", Graded(text, "open")) for text in left]
-    return Answer((*brief, *_tables(measured)), files, derived.notes, brief=brief)
+    told = [paragraph(Message(BEFORE))] if derived.before else []
+    return Answer((*told, *brief, *_tables(measured)), files, derived.notes, brief=brief)
 
 
 def _tables(measured: Extremes) -> Iterator[Block]:

@@ -24,14 +24,13 @@ if TYPE_CHECKING:
 class Request:
     """List the values of a parameter at which terms of higher order of FILE decide otherwise than beside them.
 
-    Without --vary: what they decide at the values, and in parameters where there are formulas.
-
     Between two of them one verdict holds.  Each is the root of a polynomial: a resonance of order 3 or 4 of two
     frequencies, a zero of Arnold's determinant D4, a border of the first approximation; with applied forces a border at
     which a pair of roots becomes imaginary (soft or hard, by Lyapunov's coefficient) or a root zero.  The theorems are
     those of problem 11 ('mbsym explain 11'), which 'mbsym run --problems 11' tells at the values of the description.
 
-    Along a parameter every other one needs a rational number, from the description (values:) or from --set.
+    Along a parameter every other one needs a rational number, from the description (values:) or from --set.  Without
+    --vary it is told what they decide at the values, and in parameters where there are formulas.
 
     Exit codes: 0 listed, 1 they cannot be listed (the reason is given), 2 something is missing or wrong,
     130 interrupted.

@@ -291,9 +291,10 @@ Stateless = Annotated[
     Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", state=False)
 ]
 Numbers = Annotated[Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set")]
+Anew = Annotated[bool, Flag(None, "Measure again what an earlier command has measured.")]
 
 #: The same as signatures show them.
-PLAIN = {"Values": "Mapping[str, Fraction | float | str]", "Numbers": "Mapping[str, Fraction]"}
+PLAIN = {"Values": "Mapping[str, Fraction | float | str]", "Numbers": "Mapping[str, Fraction]", "Anew": "bool"}
 
 
 def duration(help: str, usual: str = "") -> Number:

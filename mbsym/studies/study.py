@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from mbsym.report.whole_run import Beside
 
 
+T = TypeVar("T")
+
+
 class Exit(IntEnum):
     """Exit codes of commands: everything held; a result is missing or failed its check; the input is wrong; what was
     done ended early; the user stopped it (as shells count the signal)."""
@@ -78,6 +81,18 @@ def unremembered(
     return measure(), False
 
 
+#: What is said of an answer that an earlier command found.
+BEFORE = "measured by an earlier command, seconds too; --anew measures again"
+
+
+def identity(scenario: Scenario) -> str:
+    """A text that two scenarios share only if they are the same motion of the same description."""
+    from mbsym.source.yaml_writer import meaning
+
+    numbers = {name: getattr(scenario, name) for name in scenario.__dataclass_fields__ if name != "system"}
+    return repr((meaning(scenario.system), numbers))
+
+
 @dataclass(frozen=True)
 class Screen:
     """Where a result is told: ``width`` columns, None in a file or pipe, or ``quiet``, nowhere.
@@ -120,6 +135,21 @@ class Asked:
     @property
     def language(self) -> str:
         return self.spoken or self.system.language
+
+    def measured(
+        self,
+        what: str,
+        scenario: Scenario,
+        how: object,
+        measure: Callable[[], T],
+        anew: bool,
+        sound: Callable[[T], bool] = lambda found: True,
+    ) -> tuple[T, bool]:
+        """``what`` is asked of a motion, in all ``how``: the answer, and whether an earlier command found it."""
+        if self.remember is unremembered:
+            return measure(), False
+        found: tuple[T, bool] = self.remember((what, identity(scenario), repr(how)), measure, sound, anew)
+        return found
 
     @property
     def motion(self) -> Scenario:
@@ -354,8 +384,11 @@ _LACKING = {
 }
 
 
-def missing(shown: Sequence[str], what: str = "value") -> Unfit:
-    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
+def missing(shown: Sequence[str], what: str = "value", led: bool = False) -> Unfit:
+    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``.
+
+    ``led``: positions are led to constraints, so that rough ones will do.
+    """
     names = [name.split(" ")[0] for name in shown]
     positions = [name for name, shown_name in zip(names, shown, strict=True) if " " in shown_name]
     example = " ".join(f"--set {name}=1" for name in names[:3]) + (" ..." if len(names) > 3 else "")
@@ -366,6 +399,8 @@ def missing(shown: Sequence[str], what: str = "value") -> Unfit:
     if positions:
         places.append(f"initial: {{{positions[0]}: 1, ...}}")
     hint = Message("[[example]], or in the file  [[places]]", example=example, places=",  ".join(places))
+    if led and positions:
+        hint = Message("[[hint]]; a position near the one that is meant will do: constraints lead it there", hint=hint)
     suffix = " (its initial position)"
     listed = joined(
         (Message("[[name]] (its initial position)", name=x.split(" ")[0]) if x.endswith(suffix) else x for x in shown),

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message, duration, joined
 from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
-from mbsym.studies.request import Flag, Number, Settings, Value, Words
+from mbsym.studies.request import Anew, Flag, Number, Settings, Value, Words
 from mbsym.studies.request import duration as length
-from mbsym.studies.study import Answer, Asked, Exit, Folder, Line, Refusal, Study, Watch, failed, line
+from mbsym.studies.study import BEFORE, Answer, Asked, Exit, Folder, Line, Refusal, Study, Watch, failed, line
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
-    from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.trade import tradeoff as trade_study
     from mbsym.report.content import Block
 
@@ -27,7 +26,6 @@ def _methods() -> tuple[str, ...]:
 
 
 SETTINGS = Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", declared=lambda texts: True)
-BEFORE = "measured by an earlier command, seconds too; --anew measures again"
 METHODS = Words(None, "Some of them, separated by commas.", "-m", choices=_methods, what="method", every="all")
 BUDGET = "Work worth so many seconds on a usual machine, counted, not timed; less than 30 may be too little."
 
@@ -64,7 +62,7 @@ class Request:
     budget: Annotated[float, Number("S", BUDGET)] = 60.0
     fidelity: Annotated[bool, Flag(None, "Compare simpler models too.", both=True)] = True
     all_rows: Annotated[bool, Flag(None, "Print every run, not only those on the front and near the target.")] = False
-    anew: Annotated[bool, Flag(None, "Measure again what an earlier command has measured.")] = False
+    anew: Anew = False
 
 
 @dataclass(frozen=True)
@@ -87,19 +85,9 @@ def derive(context: Asked, request: Request, watch: Watch) -> Found:
     def measure() -> trade_study.Study:
         return studied(scenario, methods, request.time, request.budget, request.fidelity, watch)
 
-    how = repr((request.methods, request.time, request.budget, request.fidelity))
-    measured, before = context.remember(
-        ("tradeoff", identity(scenario), how), measure, lambda study: not study.trade.interrupted, request.anew
-    )
-    return Found(measured, notes, before)
-
-
-def identity(scenario: Scenario) -> str:
-    """A text that two scenarios share only if they are the same motion of the same description."""
-    from mbsym.source.yaml_writer import meaning
-
-    numbers = {name: getattr(scenario, name) for name in scenario.__dataclass_fields__ if name != "system"}
-    return repr((meaning(scenario.system), numbers))
+    how = request.methods, request.time, request.budget, request.fidelity
+    whole = context.measured("tradeoff", scenario, how, measure, request.anew, lambda x: not x.trade.interrupted)
+    return Found(whole[0], notes, whole[1])
 
 
 def answer(context: Asked, request: Request, derived: Found) -> Answer:

@@ -31,6 +31,7 @@ from mbsym.algebra.matrices import (
     leading_determinants,
     leading_minors,
     null_space,
+    null_space_of_rationals,
     reduced_rows,
     skew,
     solved,
@@ -163,6 +164,16 @@ def test_kernels_by_hand() -> None:
     assert null_space(NUMBERS, rows, 3) == [[-2, 1, 0]]
     assert reduced_rows(fmpq_mat(rows)) == {0: [1, 2, 0], 2: [0, 0, 1]}
     assert null_space(NUMBERS, [], 2) == [[1, 0], [0, 1]]
+
+
+@given(st.lists(st.lists(st.integers(-2, 2), min_size=5, max_size=5), max_size=8))
+def test_kernels_of_sparse_rows_are_annulled_and_complete(rows: list[list[int]]) -> None:
+    sparse = [{column: fmpq(x) for column, x in enumerate(row) if x} for row in rows]
+    basis = null_space_of_rationals(sparse, 5)
+    assert all(sum(x * y for x, y in zip(row, vector, strict=True)) == 0 for row in rows for vector in basis)
+    rank = fmpq_mat(rows).rank() if rows else 0
+    assert len(basis) == 5 - rank
+    assert not basis or fmpq_mat(basis).rank() == len(basis)
 
 
 def test_rows_of_polynomials_stay_primitive() -> None:

@@ -59,6 +59,17 @@ def test_relations_are_put_in_where_a_command_knows_no_others(tmp_path: Path) ->
     assert "wheel.yaml:8:5" in done.stderr
 
 
+def test_rough_positions_do_where_constraints_lead_them(tmp_path: Path) -> None:
+    """The hint's own words are tried: what was missing is given roughly, and the run begins on the constraints."""
+    path = written(tmp_path, TEXT.replace("m: positive, r: positive", "m: 1, r: 2"))
+    asked = ("simulate", path, "--time", "1", "--format", "csv", "--out", tmp_path / "out", "--set", "phi=1")
+    done = mbsym(*asked)
+    assert done.exit_code == 2
+    assert "a position near the one that is meant will do" in " ".join(done.stderr.split())
+    done = mbsym(*asked, "--set", "x=3", "--set", "y=0")
+    assert (done.exit_code, "closest state that does" in done.stdout) == (0, True)
+
+
 def test_dimensions_of_constraints_are_checked(tmp_path: Path) -> None:
     path = written(tmp_path, TEXT + "  - relation: x = phi\nunits: {x: m, y: m, r: m, phi: rad, m: kg}\n")
     done = mbsym("check", path)

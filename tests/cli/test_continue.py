@@ -287,3 +287,17 @@ def test_a_run_that_ended_stiff_goes_on_by_its_last_method(tmp_path: Path) -> No
     refused = mbsym(path, "--time", 40000, "--continue", tmp_path / "simulation.json", *limit)
     assert refused.exit_code == 2
     assert "method_changes" in refused.output
+
+
+def test_a_run_in_declared_variables_is_told_the_way_in_coordinates(tmp_path: Path) -> None:
+    """Of such a run no other is continued: what the hint says to do works."""
+    name = SHIPPED / "clebsch-poisson.yaml"
+    runs = [("--out", str(tmp_path / "declared")), ("--variables", "coordinates", "--out", str(tmp_path / "angles"))]
+    for options in runs:
+        assert mbsym(name, "--time", "1", "--format", "csv", "--no-estimate", *options).exit_code == 0
+    refused = mbsym(name, "--time", "2", "--continue", str(tmp_path / "declared" / "simulation.json"))
+    assert refused.exit_code == 2
+    assert "hint: take the simulation.json of a run of this FILE with --variables coordinates" in refused.output
+    earlier = str(tmp_path / "angles" / "simulation.json")
+    words = ("--time", "2", "--format", "csv", "--no-estimate", "--out", str(tmp_path / "longer"))
+    assert mbsym(name, *words, "--variables", "coordinates", "--continue", earlier).exit_code == 0

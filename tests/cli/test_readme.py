@@ -119,6 +119,16 @@ def test_the_readme_is_short_and_its_links_lead_somewhere() -> None:
     assert [link for link in links if not (ROOT / link).exists()] == []
 
 
+def test_what_the_architecture_names_is_there() -> None:
+    """Paths from the root or in mbsym/, names of modules anywhere in it."""
+    named = set(re.findall(r"`([\w./-]+)`", (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")))
+    known = {path.name for path in (ROOT / "mbsym").rglob("*.py")}
+    paths = [name for name in named if "/" in name]
+    assert len(paths) > 100
+    assert [name for name in paths if not (ROOT / name).exists() and not (ROOT / "mbsym" / name).exists()] == []
+    assert {name for name in named if name.endswith(".py") and "/" not in name} <= known
+
+
 def test_the_description_of_the_reference_holds() -> None:
     """A pendulum on a spring hangs at rest by l0 + m g/k, and its coordinates are found in their order."""
     import mbsym

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 from conftest import SHIPPED
+from flint import acb, arb, ctx
 
 from mbsym.expressions.tree import Number
 from mbsym.numerics.kernels import stored
 from mbsym.numerics.scenario import scenario
 from mbsym.source import load
-from mbsym.studies.tradeoff import identity
+from mbsym.studies.study import identity
 from mbsym_cli.beside import Beside
 from mbsym_cli.main import main
 from mbsym_cli.remembered import remembered
@@ -170,3 +172,56 @@ def test_two_files_of_one_name_have_folders_of_their_own(tmp_path: Path) -> None
     assert done.exit_code == 0, done.output + done.stderr
     written = [json.loads(x.read_text(encoding="utf-8")) for x in (tmp_path / "out").glob("*/tradeoff.json")]
     assert sorted(x["system"] for x in written) == ["Other Simple pendulum", "Simple pendulum"]
+
+
+@pytest.mark.parametrize("shift", [-300, 0, 40])
+def test_balls_are_kept_to_the_last_bit(cache: Path, shift: int) -> None:
+    """Radii of 1 to 30 bits, middles of many: a rounding would make other files of a second question."""
+    with ctx.workprec(200):
+        balls = [acb(arb(arb(1) / 3, arb((2**k - 1, shift))), arb(k)) for k in range(31)]
+    kept, _ = remembered([str(shift)], lambda: balls, lambda found: True, False)
+    known, before = remembered([str(shift)], list, lambda found: True, False)
+    assert before
+    for one, other in zip(kept, known, strict=True):
+        for a, b in ((one.real, other.real), (one.imag, other.imag)):
+            assert (a.mid(), a.rad()) == (b.mid(), b.rad())
+
+
+@pytest.mark.parametrize(
+    ("words", "measures"),
+    [
+        (("simulate", "--time", 1, "--accuracy", "1e-5", "--format", "csv"), "simulation.accurate.planned"),
+        (("simulate", "--time", 1, "--accuracy", "1e-5", "--plan"), "simulation.accurate.planned"),
+        (("simulate", "--time", 1, "--estimate", "--format", "csv"), "simulation.run.estimated"),
+        (("extremes", "--budget", "0.05"), "numerics.extremes.extremes.extremes"),
+    ],
+)
+def test_plans_estimates_and_extremes_are_measured_once(
+    cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[object, ...], measures: str
+) -> None:
+    """The second question writes the same bytes; --anew, another value, or a deleted folder measures."""
+    monkeypatch.setattr(Beside, "allowed", True)
+    command, *options = words
+    out = () if "--plan" in words else ("-o", tmp_path / "out")
+
+    def asked(*more: object) -> tuple[int, str, dict[str, bytes]]:
+        done = mbsym(command, PENDULUM, *options, *out, *more)
+        files = {x.name: x.read_bytes() for x in (tmp_path / "out").glob("*.csv")}
+        return done.exit_code, done.output, files
+
+    first, again = asked(), asked()
+    assert (first[0], again[0], again[2]) == (0, 0, first[2])
+    assert "--anew" not in first[1]
+    assert "measured by an earlier command, seconds too; --anew measures again" in " ".join(again[1].split())
+
+    def forbidden(*asked: object, **_: object) -> None:
+        raise ValueError("measured again")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(f"mbsym.{measures}", forbidden)
+        assert asked()[0] == 0
+        for more in (("--anew",), ("--set", "l=2")):
+            assert asked(*more)[0] != 0, more
+        shutil.rmtree(cache)
+        assert asked()[0] != 0
+    assert asked()[2] == first[2]

@@ -556,3 +556,31 @@ def test_drift_is_seen_where_nothing_leads_back() -> None:
     assert drift is not None
     assert 1e-9 < drift.largest[0] < 1e-2
     assert drift.largest[0] > 1e3 * max(run(PENDULUM, 20.0, method="rk4", step=0.05).drift.largest)  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("unit", [1, 1000, 10**9])
+def test_the_largest_moves_are_told_first_in_any_unit_of_length(unit: int) -> None:
+    """A point on a wheel of 10 mm, which is led from 2 mm aside of it.
+
+    x = L cos a: x moves by a good part of its size, a by little; beside 1 + |x| metres x is nothing.
+    """
+    length, inertia, start = (str(Fraction(*x) * unit**n) for x, n in (((1, 100), 1), ((1, 10**4), 2), ((8, 1000), 1)))
+    text = f"""
+mbsym: 1
+name: point on a wheel
+bodies:
+  - {{name: wheel, attached to: 0, rotation: {{axes: [3], angles: [a]}}, mass: 0, inertia about: joint,
+     inertia: [0, 0, {inertia}], coordinates: [a]}}
+  - {{name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}}
+constraints: [{{relation: x = {length}*cos(a)}}]
+initial: {{a: 1, x: {start}}}
+"""
+    from mbsym.report.runs.constrained_run_words import start_lines
+
+    system, _ = read(text)
+    assert system is not None
+    moves = closed(scenario(system)).moves
+    parts = {move.name: move.part for move in moves}
+    assert parts["x"] > parts["a"] > 0
+    shown = [str(text).split(" = ")[0] for text in start_lines(closed(scenario(system)), system)][1:]
+    assert shown == sorted(parts, key=lambda name: -parts[name])

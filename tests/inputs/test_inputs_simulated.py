@@ -54,6 +54,47 @@ def test_a_constant_a_ramp_and_a_feedback_move_as_by_hand() -> None:
     assert moved.conservation.standing.value == "not conserved"
 
 
+SPUN = """mbsym: 1
+name: body that turns about its first axis
+parameters: {A: 2, B: 3, k: {value: 1/2}, K: 7}
+inputs: {u: {meaning: torque}}
+bodies:
+  - name: body
+    attached to: 0
+    rotation: {axes: [3, 2, 1], angles: [a, b, c]}
+    mass: 1
+    inertia about: joint
+    inertia: [A, B, B]
+    speeds: {p: omega1, q: omega2, r: omega3}
+    orientation: {gamma: 3}
+loads:
+  - torque: {body: body, components: [u, 0, 0], axes: body}
+initial: {a: 0, b: 0, c: 1, p: 3, q: 0, r: 0}
+"""
+
+
+@pytest.mark.parametrize("variables", ["declared", "coordinates"])
+def test_laws_hold_speeds_and_unit_vectors(variables: str) -> None:
+    """A p' = -k p: p = 3 exp(-k t/A); A c'' = -K sin(c) with gamma2 = sin(c), gamma3 = cos(c): A p^2/2 - K gamma3."""
+    analysis, t = mbsym.loads(SPUN), 2.0
+    damped = mbsym.simulate(analysis, t, inputs={"u": "-k*p"}, variables=variables)
+    assert damped["p"][-1] == pytest.approx(3 * math.exp(-t / 4), rel=1e-9)
+    swung = mbsym.simulate(analysis, t, inputs={"u": "-K*gamma2"}, variables=variables)
+    energy = swung["p"] ** 2 - 7 * swung["gamma3"]
+    assert np.ptp(swung["gamma3"]) > 1
+    assert np.max(np.abs(energy - (9 - 7 * math.cos(1)))) < 1e-8
+
+
+def test_an_angle_that_is_no_variable_is_refused_in_a_law(tmp_path: Path) -> None:
+    path = tmp_path / "spun.yaml"
+    path.write_text(SPUN, encoding="utf-8")
+    words = ["simulate", str(path), "--time", "1", "--input", "u=-k*c_dot", "--format", "csv", "--out", str(tmp_path)]
+    refused = CliRunner().invoke(main, words)
+    assert refused.exit_code == 2
+    assert "the angle 'c' in the law of u is no variable of this run" in refused.stderr
+    assert CliRunner().invoke(main, [*words, "--variables", "coordinates"]).exit_code == 0
+
+
 def test_every_wrong_law_is_told_at_once() -> None:
     analysis = mbsym.loads(CART)
     with pytest.raises(ValueError, match=r"no input called w.*unknown name 'y'.*'v' is an input"):

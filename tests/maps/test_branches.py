@@ -7,7 +7,7 @@ import re
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from math import cos
+from math import cos, pi
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,7 @@ from mbsym.mechanics.rest import given_values
 from mbsym.report.maps.words import EVENTS, remark_words
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
+from mbsym.studies.equilibria.branches import rows
 from mbsym_cli.main import main
 from tests.report.readers import read_latex
 
@@ -138,9 +139,13 @@ def test_a_double_root_over_the_whole_interval_is_no_proof(tmp_path: Path) -> No
 
 
 def test_a_parameter_in_an_angle_is_told_and_no_set_of_singular_equilibria(tmp_path: Path) -> None:
-    """x^2 = sin p - 1/2 folds at p = pi/6 alone, which is not found."""
+    """x^2 = sin p - 1/2 folds at p = pi/6 alone, which is not solved; trying finds it to a thousandth of [-1, 1]."""
     there = found(ball(tmp_path, "sin(p) - 1/2 - x**2"), "p", "-1", "1")
     assert not there.proved
+    assert counts(there) == [(0, 0), (2, 1)]
+    ((at, _),) = told(there)
+    assert at == pytest.approx(pi / 6, abs=2 / 1000)
+    assert [x[1] for x in rows(there)] == ["0, not proved", "not counted", "2, not proved"]
     (remark,) = there.remarks
     assert remark.doubt is Doubt.UNFINISHED
     assert "root or a function" in remark.about

@@ -136,6 +136,18 @@ def test_what_is_given_twice_may_agree() -> None:
         scenario(described(f"{{{angles}, {own.replace('r: 3', 'r: 4')}}}", "[1, 2, 3]").system)
 
 
+@pytest.mark.parametrize("rate", ["1e-30", "1e-9", "1e9"])
+def test_what_is_given_twice_may_agree_in_any_unit_of_time(rate: str) -> None:
+    """The speed of the turn above: half of it is no agreement, however small it is beside 1; ten digits of it are."""
+    text = "{{a: 0, b: 0, c: {{position: pi/2, velocity: {0}}}, e0: 1, e1: 0, e2: 0, e3: 1, p: 0, q: 0, r: {0}{1}}}"
+    text = text.replace("e0: 1", "e0: sqrt(2)/2").replace("e3: 1", "e3: sqrt(2)/2")
+    text = text.replace("a: 0, b: 0", "a: {{position: 0, velocity: 0}}, b: {{position: 0, velocity: 0}}")
+    found = scenario(described(text.format(rate, "*(1 + 1e-10)"), "[1, 2, 3]").system)
+    assert float(found.velocities[2]) == pytest.approx(float(rate), rel=1e-9)
+    with pytest.raises(Incomplete, match="given twice, by coordinates and by speeds"):
+        scenario(described(text.format(rate, "/2"), "[1, 2, 3]").system)
+
+
 def test_values_of_declared_variables_are_replaced() -> None:
     analysis = described("{e0: 1, e1: 0, e2: 0, e3: 0, p: 1, q: 0, r: 0}", "[1, 2, 3]")
     run = mbsym.simulate(analysis, 1.0, samples=2, estimate=False, values={"p": "5/2"})

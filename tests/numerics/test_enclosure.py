@@ -178,7 +178,7 @@ def test_a_tail_of_zero_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_set_that_is_not_carried_along_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Errors of earlier steps must grow with the motion."""
     real = segments._carried
-    monkeypatch.setattr(segments, "_carried", lambda time, reached, moved, box: real(time, reached, moved, box * 0))
+    monkeypatch.setattr(segments, "_carried", lambda t, x, moved, box, least: real(t, x, moved, box * 0, least))
     assert not contains_truth("kepler")
 
 

@@ -343,3 +343,13 @@ def test_dry_friction_and_contact_do_not_depend_on_units(length: int, frequency:
         text = described(force, f"  - potential: {potential}\n", f"position: {start}*{unit}")
         found = mbsym.simulate(mbsym.loads(text), 12 / w, samples=61, estimate=False)
         assert np.max(np.abs(found["x"] / 10.0**length - truth(found.times * w))) < 1e-8
+
+
+def test_switches_in_more_digits_are_told_in_json() -> None:
+    """x'' + 4 x = -sign x' from 5.3 turns at k pi/2; times of extended arithmetic have more digits than JSON's."""
+    from mbsym.report.runs.simulation_json import simulation_json
+
+    text = described("-sign(x_dot)", "  - potential: 2*x**2\n", "position: 5.3")
+    found = mbsym.simulate(mbsym.loads(text), 5, samples=11, arithmetic="extended", estimate=False)
+    assert found.trajectory.passed.switches[:3] == pytest.approx([k * math.pi / 2 for k in (1, 2, 3)], abs=1e-9)
+    assert '"arithmetic": "extended"' in simulation_json(found, [])

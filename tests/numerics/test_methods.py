@@ -329,6 +329,22 @@ def test_extended_arithmetic_gives_more_digits(kepler: Dynamics) -> None:
     assert np.abs(end - initial).max() < 1e-6
 
 
+@pytest.mark.parametrize("scalar", [FLOAT64, FLOAT32, EXTENDED])
+def test_close_rows_of_taylor_series_are_those_of_its_steps(scalar: str, pendulum: Dynamics) -> None:
+    pytest.importorskip("heyoka")
+    pieces, filling = (start("taylor", pendulum, scalar, tolerance=1e-8) for _ in range(2))
+    parts = np.linspace(0.0, 3.0, 700), np.linspace(3.0, 20.0, 1500)[1:]
+    found = np.hstack([filling.fill(part) for part in parts])
+    times, steps = np.concatenate(parts), []
+    expected = [np.asarray(pieces.state)[:, None]]
+    while pieces.time < times[-1]:
+        steps.append(piece := pieces.step())
+        within = (piece.start < times) & (times <= piece.end)
+        expected.append(piece(times[within]))
+    assert np.array_equal(found, np.hstack(expected))
+    assert filling.work.steps == len(steps) > 100
+
+
 @pytest.mark.parametrize("name", ["dop853", "rk45", "taylor"])
 def test_the_pleiades(name: str) -> None:
     """Seven stars with close encounters (Hairer, Norsett & Wanner); 13 published digits."""

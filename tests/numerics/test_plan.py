@@ -34,6 +34,7 @@ from mbsym.numerics.planning.plan_items import (
 )
 from mbsym.numerics.planning.planning import Pins, planned
 from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.report.runs.plan_words import bound_lines
 from mbsym.simulation import Request, simulate
 from mbsym.simulation.accurate import simulate_accurately
 
@@ -675,3 +676,34 @@ def test_what_steps_at_their_stability_err_by_is_not_laid_to_rounding() -> None:
     rounding = next(share for share in bound.shares if share.name == "arithmetic")
     assert rounding.how is None or rounding.error < 1e-12
     assert not any("rounding is most" in item.why for item in plan.items)
+
+
+def test_nothing_is_told_of_runs_that_part_before_the_end() -> None:
+    """Rounding of 64 bits grows by e^(2.1 t) or so: at t = 60 every run is another motion, and errors are unknown.
+
+    Two such runs differ by the size of the motion, and a twentieth of that is no measure of either.
+    """
+    plan = planned(described(CHAOTIC.read_text(encoding="utf-8")), Accuracy(1e-6), np.linspace(0, 100, 101))
+    assert not plan.reached
+    assert plan.bound.total == float("inf")
+    assert 5 < plan.parted < 60
+    (warning,) = (str(text) for title, text in bound_lines(plan, None) if title == "warning")
+    assert f"two fine runs part from t = {plan.parted:.3g} on" in warning
+    assert (plan.more, plan.less) == (None, None)
+
+
+def test_dear_runs_that_part_are_not_made_finer_and_finer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same where runs count as dear: three tell that no arithmetic here carries to the end, and one is tried."""
+    monkeypatch.setattr(pilot, "DEAR", 0.0)
+    runs: list[Setting] = []
+    run = pilot.Bench.run
+
+    def counted(bench: Any, method: Any, scalar: str, setting: Setting, often: bool = False) -> Any:
+        runs.append(setting)
+        return run(bench, method, scalar, setting, often)
+
+    monkeypatch.setattr(pilot.Bench, "run", counted)
+    given = described(CHAOTIC.read_text(encoding="utf-8"))
+    assert planned(given, Accuracy(1e-6), np.linspace(0, 100, 101)).parted < 60
+    assert len(runs) <= 5
+    assert planned(given, Accuracy(1e-6), np.linspace(0, 2, 101)).reached

@@ -125,6 +125,18 @@ def as_described(name: str) -> tuple[Scenario, Simulation]:
     return given, run(given, 2)
 
 
+def test_roundings_of_a_turned_start_rule_no_sizes() -> None:
+    """Unit vectors with components like 1e-78, as phi = pi/2 leaves them, have the size 1; the spin is fastest."""
+    dynamics = run(scenario(described("gyrostat-poisson")), 1e-3).dynamics
+    state = np.array(dynamics.scenario.state, dtype=float)
+    turned = [name[:-1] in ("alpha", "beta", "gamma") for name in dynamics.inputs[1 : 1 + dynamics.dimension]]
+    assert sum(turned) == 9
+    assert np.min(np.abs(state[turned][state[turned] != 0])) < 1e-60
+    assert np.allclose(about(dynamics, 0.0, state).sizes[turned], 1.0)
+    spin = 200.0
+    assert spin == pytest.approx(rates(dynamics)[1], rel=0.01)
+
+
 #: Every system in mm, g and ms, and in one of the others.
 CHOSEN = [(name, "mm-g-ms") for name in sorted(UNITS)]
 CHOSEN += [(name, ("microns", "megametres", "milliseconds")[k % 3]) for k, name in enumerate(sorted(UNITS))]

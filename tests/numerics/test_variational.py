@@ -63,6 +63,26 @@ def test_an_oscillator_answers_as_its_closed_form() -> None:
     assert np.max(np.abs(found - expected)) < 1e-10
 
 
+def test_a_motion_that_no_mass_changes_has_zeros_in_few_steps() -> None:
+    """Falling bodies fall alike: what roundings leave of the derivative by m rules no step."""
+    text = """
+mbsym: 1
+name: Pendulum
+parameters: {m: positive, l: positive, g: positive}
+bodies:
+  - {name: bob, attached to: 0, rotation: {axes: [3], angles: [a]}, mass centre: [0, -l, 0], mass: m}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+values: {m: 3, l: 0.7, g: 9.81}
+initial: {a: 2}
+"""
+    found = sensitive(scenario(system(text)), ["m", "l"])
+    run = integrated(found, METHODS["dop853"], Setting(1e-10), [0.0, 1.0])
+    assert run.work.steps < 200
+    by_mass, by_length = split(run.states[:, -1], 2)[1]
+    assert np.max(np.abs(by_mass)) < 1e-13 < 1 < np.max(np.abs(by_length))
+
+
 def test_what_follows_from_a_parameter_moves_with_it() -> None:
     given = system(OSCILLATOR)
     assert dependent(given, ["w"]) == ("k",)

@@ -313,4 +313,5 @@ def test_kapitza_s_potential_as_json():
     assert found["phases"] == ["phi"]
     assert found["rates"] == ["nu"]
     assert found["orders"] == {"h": 1}
+    assert found["averaged_motion_at_values"] == "stable"  # upside down: h^2 nu^2 = 36 > 2 g l
     assert len(found["measured"]["distances"]) == len(found["measured"]["parts"])

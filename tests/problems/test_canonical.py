@@ -109,6 +109,6 @@ def test_what_has_none_says_why():
         mbsym.load(SHIPPED / "double-pendulum.yaml").routh  # noqa: B018
 
 
-def test_systems_in_speeds_have_them_in_coordinates():
+def test_systems_in_speeds_have_routhians_in_coordinates():
     found = mbsym.load(SHIPPED / "clebsch-poisson.yaml").routh
     assert found.ignored == ("c",)

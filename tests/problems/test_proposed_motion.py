@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+from typing import Any
+
 import pytest
+
+sys.path.append(str(Path(__file__).parents[1] / "bench"))
+import chains
 
 import mbsym
 from mbsym.analysis.approximation import regular_at_zero
 from mbsym.analysis.stages import Unavailable
 from mbsym.model.system import System
+from mbsym.problems import linearisation
 
 PARTICLE = """
 mbsym: 1
@@ -79,3 +87,22 @@ def test_floquet_is_named_where_coefficients_may_be_periodic(height: str, period
         mbsym.loads(PIVOT.format(height=height)).stability  # noqa: B018
     assert "time-dependent" in str(told.value)
     assert ("mbsym floquet FILE" in str(told.value)) is periodic
+
+
+def test_rest_is_looked_at_without_products_of_deviations_where_nothing_is_singular(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A chain of n bodies has n**2 of them in every formula."""
+    orders: list[int] = []
+    expand = linearisation.quadratised
+
+    def counted(scene: Any, whole: Any = None, order: int = 2) -> Any:
+        orders.append(order)
+        return expand(scene, whole, order)
+
+    monkeypatch.setattr(linearisation, "quadratised", counted)
+    text = chains.description(chains.chain(8, full=False))
+    with pytest.raises(Unavailable) as told:
+        mbsym.loads(text).stability  # noqa: B018
+    assert "motion: {q1: 0, q2: 0" in str(told.value)
+    assert max(orders) == 1

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from kinds_of_constraints import BODIES, KINDS
+from random_systems import numbers
 
 import mbsym
 from mbsym.analysis.constrained import programs_of
@@ -98,3 +99,17 @@ def test_what_is_said_to_be_in_a_reaction_is(drive: str) -> None:
     told = " ".join(str(TARGETS["html"].render(analysis, (3,))).split())
     assert "given by coordinates" in told
     assert "forces and torques on bodies act besides" in told
+
+
+def test_a_system_in_speeds_has_them_in_coordinates() -> None:
+    """What a joint transmits does not depend on the variables: w = q' with the same pendulum."""
+    analysis = mbsym.loads(PENDULUM.replace("mass: m,", "mass: m, speeds: {w: omega3},"), (1, 2, 3))
+    plain = mbsym.loads(PENDULUM, (1, 2, 3))
+    (mine,), (theirs,) = analysis.reactions, plain.reactions
+    assert [str(x) for x in (*mine.force, *mine.moment)] == [
+        "m*l*q_ddot + m*g*sin(q)", "m*l*q_dot**2 + m*g*cos(q)", "0", "0", "0", "(m*l**2 + J)*q_ddot + m*l*g*sin(q) - k"
+    ]  # fmt: skip
+    assert numbers(analysis, [*mine.force, *mine.moment]) == numbers(plain, [*theirs.force, *theirs.moment])
+    assert checked(analysis) == EXACT
+    told = " ".join(str(TARGETS["html"].render(analysis, (3,))).split())
+    assert "They are told in generalised coordinates" in told

@@ -240,3 +240,12 @@ def test_definitions_names_beside_and_literature(analysis: mbsym.Analysis) -> No
     assert in_latex(analysis).math(at) == r"\text{at } \theta^{2} \colon\quad 1"
     assert plain_writer.Writer().inline(at) == "at theta**2: 1"
     assert in_latex(analysis).math(Relation("-", Symbol("v", "4", "(2)"))) == "-v_{4}^{(2)}"
+
+
+def test_brackets_after_a_letter_are_a_call_of_names_and_a_product_of_formulas(analysis: mbsym.Analysis) -> None:
+    """f(lambda) and lambda_1 (a + b): written alike, the product would be read as a function of a + b."""
+    writer = plain_writer.Writer(Language(""), True)
+    variable, factor = Symbol("lambda"), analysis.equations.forcing[0]
+    assert writer.inline(Relation(Symbol("f"), content.Listed((variable,), brackets=True))) == "f(lambda)"
+    product = writer.inline(Relation(Symbol("lambda", "1"), content.Listed((factor,), brackets=True)))
+    assert product.replace(plain_writer.UNBROKEN, " ").startswith("lambda_1 (")

@@ -120,6 +120,28 @@ def test_numbers_agree_with_lagranges_equations(name: str) -> None:
     assert np.isfinite(module.reduced_potential(reduced[: len(kept)], constants, p, time))
 
 
+@pytest.mark.parametrize(
+    ("name", "state"),
+    [
+        ("cartesian-pendulum", (0.6, -0.8, 0.8 * 0.7, 0.6 * 0.7)),
+        ("chaplygin-sleigh", (0.1, 0.2, 0.3, 0.7, 0.7 * np.tan(0.3), 0.4)),
+    ],
+)
+def test_numbers_agree_on_the_constraints(name: str, state: tuple[float, ...]) -> None:
+    """y' is dy/dx x' (central differences) in the velocities that the constraints leave."""
+    module, time, step = module_of(name), 0.7, 1e-6
+    p = {key: 1.3 if value is None else value for key, value in module.complete().items()}
+    x = np.array(state)
+    y, rates = module.canonical_state(x, p, time), module.rhs(time, x, p)
+    there, back = (module.canonical_state(x + sign * step * rates, p, time) for sign in (1.0, -1.0))
+    along = (there - back) / (2 * step)
+    assert len(y) == len(module.CANONICAL_POSITIONS) + len(module.MOMENTA) < len(x)
+    assert module.canonical_rhs(time, y, p) == pytest.approx(along, abs=1e-7 * np.abs(along).max())
+    n = len(x) // 2
+    wanted = module.generalized_energy(x[:n], x[n:], p, time)
+    assert module.hamiltonian(y, p, time) == pytest.approx(wanted, rel=1e-11, abs=1e-9)
+
+
 @needs_pdflatex
 def test_long_denominators_are_written_once_and_stay_on_the_page(tmp_path: Path) -> None:
     """The determinant of the ignored coordinates' inertia is wider than any line."""

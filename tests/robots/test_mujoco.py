@@ -5,6 +5,7 @@ Needs MuJoCo 3 (the extra ``robots``); without it these tests are skipped.
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -15,6 +16,7 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.expressions.place import Complaints
+from mbsym.expressions.tree import text as written
 from mbsym.report.code.python_module import render
 from mbsym.source.robots import convert
 
@@ -107,6 +109,63 @@ def test_masses_forces_and_frames_are_mujoco_s(text: str) -> None:
         for k in range(model.nsite):
             site = own.frame_pose(model.site(k).name, q, own.DEFAULTS)
             assert np.abs(site[:3, 3] - data.site_xpos[k]).max() < CLOSE
+
+
+#: Free and able to turn, each slowed; they begin turned.
+SEVERAL = """<mujoco><compiler angle="radian"/><worldbody><frame pos="0.1 0.2 0.3" euler="0.3 0 0.4">
+<body name="a" pos="0.4 0 1" quat="0.8 0.1 0.4 -0.35"><joint name="f" type="free" damping="0.7"/>
+ <inertial pos="0.1 0 0.2" mass="2" diaginertia="0.3 0.4 0.5"/>
+ <body name="b" pos="0 0 1"><joint name="s" type="ball" damping="0.2" armature="0.1"/>
+  <inertial pos="0 0.3 0" mass="1" diaginertia="0.2 0.1 0.2"/></body></body></frame></worldbody></mujoco>"""
+
+
+def test_free_and_ball_joints_begin_and_are_slowed_as_mujoco_s_are() -> None:
+    """omega = E(pitch, roll) (yaw', pitch', roll') in the turned axes; v = G q': M' = G^T M G and so on."""
+    made = convert(SEVERAL, Complaints())
+    assert made is not None
+    analysis = mbsym.loads(made.yaml, problems=())
+    own = ModuleType("model")
+    exec(render(analysis, ()), own.__dict__)  # our own generated module
+    model = mujoco.MjModel.from_xml_string(SEVERAL)
+    data = mujoco.MjData(model)
+    begun = {one.coordinate: float(written(one.position)) for one in analysis.system.initial if one.position}
+    begin = np.array([begun.get(name, 0.0) for name in own.COORDINATES])
+    mujoco.mj_forward(model, data)
+    assert np.abs(own.frame_pose("b", begin, own.DEFAULTS)[:3, 3] - data.xpos[2]).max() < CLOSE
+    assert np.abs(own.frame_pose("b", begin, own.DEFAULTS)[:3, :3] - data.xmat[2].reshape(3, 3)).max() < CLOSE
+    held, _ = ours(SEVERAL.replace("</mujoco>", '<equality><weld body1="a"/></equality></mujoco>'))[1:]
+    assert np.abs(held.constraints(begin, held.DEFAULTS)).max() < CLOSE
+    source = np.random.default_rng(7)
+    for _ in range(3):
+        q, v = source.normal(size=(2, 9))
+        slopes, step = np.zeros((9, 9)), 1e-20
+        slopes[:3, :3] = np.eye(3)
+        further = np.zeros((9, 9))
+        for at in (3, 6):
+            moved = q[at : at + 3] + 1j * step * v[at : at + 3]
+            (_, p, r), block = moved, slice(at, at + 3)
+            rows = [[-np.sin(p), 0, 1], [np.sin(r) * np.cos(p), np.cos(r), 0], [np.cos(r) * np.cos(p), -np.sin(r), 0]]
+            slopes[block, block], further[block, block] = np.real(rows), np.imag(rows) / step
+            turned = product_of_turns(*q[block])
+            data.qpos[3 if at == 3 else 7 :][:4] = quaternion(turned)
+        data.qpos[:3], data.qvel[:] = q[:3], slopes @ v
+        mujoco.mj_forward(model, data)
+        mass = whole(model, data)
+        force = slopes.T @ (data.qfrc_passive - data.qfrc_bias - mass @ further @ v)
+        assert np.abs(own.mass_matrix(q, own.DEFAULTS) - slopes.T @ mass @ slopes).max() < CLOSE * np.abs(mass).max()
+        assert np.abs(own.forcing(q, v, own.DEFAULTS) - force).max() < CLOSE * np.abs(force).max()
+
+
+def product_of_turns(yaw: float, pitch: float, roll: float) -> np.ndarray:
+    """Rz(yaw) Ry(pitch) Rx(roll)."""
+    found = np.eye(3)
+    for axis, angle in ((2, yaw), (1, pitch), (0, roll)):
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        turn = np.eye(3)
+        turn[i, i] = turn[j, j] = math.cos(angle)
+        turn[j, i], turn[i, j] = math.sin(angle), -math.sin(angle)
+        found = found @ turn
+    return found
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,8 @@ import pytest
 from pages import ROOT, pages
 
 import mbsym
-from mbsym.problems.stability.words import THEOREMS, Word
+from mbsym.analysis import PROBLEMS
+from mbsym.problems.stability.words import MEANINGS, THEOREMS, Word
 from mbsym.report.schemas import names, schema
 from mbsym.source import keys
 from mbsym_cli.main import COMMANDS, main
@@ -82,8 +83,13 @@ def test_formulas_are_mathml(site: Path) -> None:
 
 def test_every_verdict_and_theorem_is_told(site: Path) -> None:
     text = Page(site / "theory.html").text
-    assert [word.value for word in Word if word.value not in text] == []
+    assert [word for word in Word if f"{word} {MEANINGS[word]}" not in text] == []
     assert [theorem.name for theorem in THEOREMS if theorem.name not in text] == []
+
+
+def test_what_each_problem_does_is_told(site: Path) -> None:
+    text = Page(site / "reference" / "problems.html").text
+    assert [n for n, problem in PROBLEMS.items() if " ".join(problem.explanation.split()) not in text] == []
 
 
 def test_every_key_of_a_description_is_on_its_page(site: Path) -> None:

@@ -96,7 +96,7 @@ def test_symbols_have_the_printed_values() -> None:
         ('<mass value="2"/>', "", "missing-key", 5),
         ('xyz="0 1 0"', 'xyz="0 0 0"', "bad-axis", 10),
         ('xyz="0 1 0"', 'xyz="0 1"', "wrong-shape", 11),
-        ('type="revolute"', 'type="planar"', "unsupported", 10),
+        ('type="revolute"', 'type="spherical"', "unsupported", 10),
         ('link="world"/><child', 'link="nowhere"/><child', "unknown-name", 11),
         ('<parent link="world"/>', '<parent link="rod &lt;1&gt;"/>', "no-tree", 4),
         ("</robot>", "", "syntax", 15),
@@ -178,6 +178,51 @@ def test_euler_angles_about_fixed_and_about_turned_axes() -> None:
 def test_other_ways_to_turn(attributes: str, columns: list[list[float]]) -> None:
     """The new axes, by hand, in the old ones."""
     assert np.allclose(orientation_of(attributes).T, columns, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "printed", ["0.499998 0.5 0.500002 0.5", "0.5 0.49999999999 -0.5 0.50000000001", "1 1e-9 1 3e-9"]
+)
+def test_a_quaternion_near_the_singular_pitch_loses_no_digits(printed: str) -> None:
+    """R = 1 + 2 (w [u] + [u]^2)/|q|^2."""
+    w, x, y, z = map(float, printed.split())
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    matrix = np.eye(3) + 2 * (w * cross + cross @ cross) / (w * w + x * x + y * y + z * z)
+    assert np.abs(orientation_of(f'quat="{printed}"') - matrix).max() < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("axis", "place", "axes"),
+    [
+        ("0 0 1", "[q1x, q1y, 0]", "[3]"),
+        ("0 -1 0", "[q1y, 0, q1x]", "[2]"),
+        ("1 0 0", "[0, q1x, q1y]", "[1]"),
+        ("1 1 0", "[q1x, q1y, 0]", "[3, 2, 3]"),
+    ],
+)
+def test_a_planar_joint_slides_across_its_axis_and_turns_about_it(axis: str, place: str, axes: str) -> None:
+    text = PENDULUM.replace('type="revolute"', 'type="planar"').replace("0 1 0", axis)
+    text = text.replace('rpy="0 0 0.3" xyz="0 0 2"', "")
+    made = converted(text)
+    assert f"connection point: {place}" in made.yaml
+    assert f"axes: {axes}" in made.yaml
+    assert made.left_out == ("contact (<collision>)", "damping of a planar joint", "dry friction of a joint")
+    system, _ = read(made.yaml, "p.yaml")
+    assert system is not None
+    assert system.coordinates == ("q1x", "q1y", "q1yaw")
+
+
+def test_a_floating_joint_moves_from_where_it_is_placed_and_quaternions_turn_origins() -> None:
+    """A third of a turn about (1, 1, 1) takes the axes 1, 2, 3 to 2, 3, 1."""
+    free = PENDULUM.replace('type="revolute"', 'type="floating"')
+    assert "connection point: [0, 0, 2]" in converted(free).yaml
+    assert "angles: [0.3]" in converted(free).yaml
+    turned = PENDULUM.replace('rpy="0 0 0.3"', 'quat_xyzw="1 1 1 1"')
+    system, _ = read(converted(turned).yaml, "p.yaml")
+    assert system is not None
+    turns = [(axis, written(angle)) for body in system.bodies for axis, angle in body.rotation.turns()]
+    assert np.allclose(product([turn for turn in turns if turn[1] != "q1"]), np.eye(3)[:, [1, 2, 0]].T.T)
+    assert "conflicting-keys" in [code for code, _ in complaints_of(PENDULUM.replace("rpy", 'quat_xyzw="1 0 0 0" rpy'))]
 
 
 def test_the_command_tells_what_it_leaves_out_and_writes_what_runs(tmp_path: Path) -> None:
@@ -889,6 +934,19 @@ def test_coordinates_may_be_called_as_the_joints() -> None:
     plain, _ = read(converted(robot, symbols=True).yaml, "r.yaml")
     assert plain is not None
     assert plain.coordinates == ("q1", "q2", "q3", "q4", "q5")
+
+
+def test_states_limits_and_actuators_that_have_no_place_are_listed_and_what_is_not_known_is_refused() -> None:
+    ball = '<body name="b"><joint name="j" type="ball" range="0 1"/><inertial pos="0 0 1" mass="1"/></body>'
+    key = '<keyframe><key qpos="1 0 0 0"/></keyframe>'
+    assert converted(mujoco("", ball, key)).left_out == ("limit of a ball joint", "state to begin in (<key>)")
+    motor = '<actuator><motor joint="j" damping="1"/></actuator>'
+    hinge = ball.replace('type="ball" range="0 1"', "")
+    assert converted(mujoco("", hinge, motor)).left_out == ("armature and damping of an actuator",)
+    for wrong in ('<joint stiffness="1 2 3"/><inertial', '<geom type="box" mesh="m" size="1 1 1"/><joint/><none'):
+        assert [code for code, _ in complaints_of(mujoco("", f"<body>{wrong} pos='0 0 0' mass='1'/></body>"))] == [
+            "unsupported", *["wrong-shape"] * ("stiffness" in wrong)
+        ]  # fmt: skip
 
 
 def test_limits_that_a_description_has_no_place_for_are_listed() -> None:

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from truth import test_accuracy_judged as judge
 from truth.independent.solve import places
 
 import mbsym
@@ -223,6 +224,19 @@ def _cost(dynamics: Any, method: str, setting: Setting, times: Any) -> tuple[flo
     except (Breakdown, Unusable, Failure):
         return float("inf"), np.full((len(dynamics.inputs) - 1, len(times)), np.nan)
     return cost(dynamics, method, "float64", found.work), found.states
+
+
+@pytest.mark.parametrize("name", ["atwood", "ball"])
+@pytest.mark.parametrize(("lie", "promises"), judge.LIES)
+def test_each_planted_lie_is_caught(name: str, lie: Any, promises: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """As without constraints: an estimate of a run with itself, skipped trials, half a bound, a coarse reference."""
+    if lie is not None:
+        lie(monkeypatch)
+    found, times = judge.accurately(SCENES[name].text, SCENES[name].time, 1e-8), np.array(places(SCENES[name].time))
+    names, states = (*found.system.coordinates, *found.system.velocities), found.at(times)
+    error = errors(name, times, lambda key: states[names.index(key)])
+    broken = judge.broken_promises(found, error, 1e-8)
+    assert {*promises} <= {*broken} if promises else not broken
 
 
 def test_a_mechanism_told_twice_gets_the_same_plan() -> None:

@@ -142,7 +142,7 @@ def advanced(field: Field, now: Bundle, bits: int, guess: float, end: arb) -> tu
     derivative, bound = _derivative(field, now.time, solutions, circle, step)
     grown = bound * (_absolute(now.axes) * _absolute(now.box))
     between = tuple(upper(grown[i, 0] + tail[i]) for i in range(field.size))
-    later = _carried(after, reached, derivative * now.axes, now.box)
+    later = _carried(after, reached, derivative * now.axes, now.box, arb(2) ** (-bits - GUARD // 2))
     series = tuple(tuple(value * size for value in row) for row, size in zip(coefficients, field.sizes, strict=True))
     spread = tuple(upper(value) for value in field.whole(between))
     return Segment(now.time, after, series, spread, tuple(field.whole(later.hull))), later, circle
@@ -178,28 +178,31 @@ def _derivative(
     return total + tail, (sizes * step).exp()
 
 
-def _carried(time: arb, reached: Sequence[arb], moved: arb_mat, box: arb_mat) -> Bundle:
-    """The set  reached + moved * box  in new axes."""
+def _carried(time: arb, reached: Sequence[arb], moved: arb_mat, box: arb_mat, least: arb) -> Bundle:
+    """The set  reached + moved * box  in new axes; sides are told apart beyond ``least``."""
     n = len(reached)
     centre = tuple(value.mid() for value in reached)
     rest = arb_mat(n, 1, [value - middle for value, middle in zip(reached, centre, strict=True)])
-    axes = _orthogonal(moved, box)
+    axes = _orthogonal(moved, box, least)
     turned = axes.solve(moved) * box + axes.solve(rest)
     return Bundle(time, centre, axes, turned)
 
 
-def _orthogonal(moved: arb_mat, box: arb_mat) -> arb_mat:
-    """Nearly orthogonal columns, the first along the longest side of the set; any exact regular matrix would do."""
+def _orthogonal(moved: arb_mat, box: arb_mat, least: arb) -> arb_mat:
+    """Nearly orthogonal columns, the first along the longest side of the set; any exact regular matrix would do.
+
+    Sides shorter than ``least``, which roundings made, count as so long: they would turn the axes otherwise in every
+    unit.
+    """
     n = moved.nrows()
-    widths = [upper(box[j, 0]) for j in range(n)]
+    widths = [max(upper(box[j, 0]), least, key=float) for j in range(n)]
     largest = max(widths, key=float)
     columns = np.eye(n)
-    if largest > 0:
-        sides = [[moved[i, j].mid() * (widths[j] / largest) for j in range(n)] for i in range(n)]
-        tried = np.array([[float(value.mid()) for value in row] for row in sides])
-        if np.all(np.isfinite(tried)):
-            order = np.argsort(-np.linalg.norm(tried, axis=0), kind="stable")
-            columns = np.linalg.qr(tried[:, order])[0]
+    sides = [[moved[i, j].mid() * (widths[j] / largest) for j in range(n)] for i in range(n)]
+    tried = np.array([[float(value.mid()) for value in row] for row in sides])
+    if np.all(np.isfinite(tried)):
+        order = np.argsort(-np.linalg.norm(tried, axis=0), kind="stable")
+        columns = np.linalg.qr(tried[:, order])[0]
     return arb_mat(n, n, [float(x) for x in columns.ravel()])
 
 

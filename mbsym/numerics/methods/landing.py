@@ -470,9 +470,9 @@ class LandingRun:
             self.passed.inside.append((float(middle), np.array(piece(np.array([middle])), dtype=float)[:, 0]))
 
     def _note_switch(self) -> None:
-        switches = self.passed.switches
-        if len(switches) < MOST_KEPT and not (switches and switches[-1] == self.time):
-            switches.append(self.time)
+        switches, at = self.passed.switches, float(self.time)  # which has more digits in extended arithmetic
+        if len(switches) < MOST_KEPT and not (switches and switches[-1] == at):
+            switches.append(at)
 
     # --- sides ---
 

@@ -16,9 +16,11 @@ rates beside its state:
 
 Of what is at 0 and rests sizes are those that the same kinetic energy gives it: D_j sqrt(M_jj) and V_j sqrt(M_jj) are
 the largest of the others, and S_i = max A_ij D_j.  F_j, v_j and S_i/A_ij that have, times sqrt(M_jj), less than 1e-12
-of the largest are roundings and count as 0.  A column y of derivatives of the state, in which single components may be
-roundings, is measured as a whole: y_i has the size S_i max_k |y_k|/S_k, and while all of y is 0 that with y_k' times
-the shortest tau for y_k.  What begins from rest at 0 by a push has the times that the slopes of the rates tell there.
+of the largest are roundings and count as 0, and so are A_ij of an angle beside those of others by the same v_j.  A
+column y of derivatives of the state, in which single components may be roundings, is measured as a whole: y_i has the
+size S_i max_k |y_k|/S_k, and while all of y is 0 that with y_k' times the shortest tau for y_k; of a derivative by a
+parameter p the part 1e-12 of S_i/|p| is a rounding, and counts as 0.  What begins from rest at 0 by a push has the
+times that the slopes of the rates tell there.
 Where nothing tells a time or a size these are 1: all rests then, or the push is constant.
 """
 
@@ -79,7 +81,7 @@ class Variables:
     """Which of the components of a state are ``angles`` (or of unit vectors), ``velocities``, constants: masks (d,).
 
     ``masses`` makes the kernel of the diagonal of the mass matrix.  ``columns``: places of derivatives of the first
-    components of the state, in their order.
+    components of the state, in their order; ``changes``: of each 1/|p| if it is by a parameter p, else 0.
     """
 
     angles: Any
@@ -87,6 +89,7 @@ class Variables:
     constant: Any
     masses: Callable[[], Kernel] | None = None
     columns: tuple[Any, ...] = ()
+    changes: tuple[float, ...] = ()
 
     @property
     def positions(self) -> Any:
@@ -125,9 +128,11 @@ def variables(dynamics: Dynamics) -> Variables:
     for place, (name, joined, number) in enumerate(full_name.partition("~") for full_name in names):
         if joined and number.isdecimal() and name in names:
             columns.setdefault(number, []).append(place)
-    return Variables(
-        angles, moving, constant, masses if n <= MOST_WEIGHED else None, tuple(map(np.array, columns.values()))
-    )
+    directions, values = getattr(dynamics, "directions", ()), dynamics.scenario.parameters
+    by = (abs(float(values.get(direction.parameter) or 0)) for direction in directions)
+    changes = tuple(1 / value if value else 0.0 for value in by) or (0.0,) * len(columns)
+    known = masses if n <= MOST_WEIGHED else None
+    return Variables(angles, moving, constant, known, tuple(map(np.array, columns.values())), changes)
 
 
 @dataclass(frozen=True)
@@ -191,6 +196,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     push = np.where(rate > 0, rate, 1.0)
     pushed = _beside(rates, begin, still, moving, push.astype(states.dtype))
     ways = _finite(pushed - rates(begin, still)[:, None])[placed] / push  # A_ij, shape (positions, velocities, m)
+    ways = _ways_above_noise(ways, kinds.angles[placed])
     bends = np.max(ways * rate, axis=1, initial=0.0)
     arcs = _arcs(kinds, placed, sizes[placed], _finite(base)[placed], largest[placed], bends)
     sizes[placed] = _sizes_above_noise(np.maximum(sizes[placed], LEAST * arcs), ways, weights)
@@ -214,11 +220,11 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     reached = np.maximum(np.max(ways * path, axis=1, initial=0.0), largest[placed] * shortest)
     sizes[placed] = np.where(sizes[placed] > 0, sizes[placed], reached)
     sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, 1.0)
-    for column in kinds.columns:
+    for column, change in zip(kinds.columns, kinds.changes, strict=True):
         own = sizes[: len(column)]
         extent, growth = (np.max(values[column] / own, axis=0) for values in (absolute, _finite(base) * shortest))
-        extent = np.where(extent > 0, extent, growth)
-        sizes[column] = own * np.where(extent > 0, extent, 1.0)
+        extent = np.where(extent > NOISE * change, extent, growth)
+        sizes[column] = own * np.where(extent > NOISE * change, extent, change or 1.0)
     natural = sizes.copy()
     own = np.maximum(absolute[moving], np.sqrt(_finite(base)[moving] * path))
     natural[placed] = np.maximum(sizes[placed], SHARE * arcs)
@@ -257,6 +263,12 @@ def _above_noise(values: Any, weights: Any) -> Any:
     """The values (n, m), 0 for those that are roundings: tiny beside the others when all are weighed by masses."""
     weighed = values * weights
     return np.where(weighed < NOISE * np.max(weighed, axis=0, initial=0.0), 0.0, values)
+
+
+def _ways_above_noise(ways: Any, angles: Any) -> Any:
+    """A_ij, 0 for those of angles and unit vectors that are roundings: tiny beside others by the same v_j."""
+    largest = np.max(ways[angles], axis=0, initial=0.0)
+    return np.where(angles[:, None, None] & (ways < NOISE * largest), 0.0, ways)
 
 
 def _sizes_above_noise(sizes: Any, ways: Any, weights: Any) -> Any:

@@ -56,6 +56,11 @@ class Stepping(ABC):
         exact = times == self.reached
         return np.where(exact, np.asarray(self.end)[:, None], found) if np.any(exact) else found
 
+    def first(self, at: Any) -> Any:
+        """The states (2n, k) at the first k >= 1 of some increasing times: those up to the end of a step; Breakdown."""
+        self.far(at[0])
+        return self.states(at[: max(1, int(np.searchsorted(at, self.reached, side="right")))])
+
     def advance(self, until: float) -> Any:
         """The state (q, q') at ``until``; raises Breakdown."""
         self.far(until)
@@ -87,10 +92,9 @@ class Stepping(ABC):
         done = 0
         try:
             while done < len(at):
-                self.far(at[done])
-                last = max(done + 1, int(np.searchsorted(at, self.reached, side="right")))
-                states[:, done:last] = self.states(at[done:last])
-                done = last
+                found = self.first(at[done:])
+                states[:, done : done + found.shape[1]] = found
+                done += found.shape[1]
         except Breakdown as trouble:
             trouble.filled = states[:, :done]
             raise

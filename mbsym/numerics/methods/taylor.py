@@ -48,6 +48,12 @@ FAR = 100.0
 #: heyoka's own loop is left after so many steps, so that Ctrl-C works.
 STEPS_AT_A_TIME = 2_000
 
+#: As many rows, and as many series, are looked at together at most.
+ROWS_AT_A_TIME, SERIES_AT_A_TIME = 2_000, 1024
+
+#: For fewer steps heyoka's own loop is not begun.
+FEW = 8
+
 
 def _heyoka() -> Any:
     try:
@@ -145,11 +151,17 @@ class Series:
     def __call__(self, times: Any) -> Any:
         """The states (2n, m) at m times."""
         at = np.asarray(times)
-        share = at - self.start
-        total = np.zeros((len(self.arrived), len(at)), self.coefficients.dtype)
-        for column in self.coefficients.T[::-1]:
-            total = total * share + column[:, None]
+        total = _sum(self.coefficients[None], at - self.start, np.zeros(len(at), int))
         return np.where(at == self.reached, self.arrived[:, None], total).astype(self.coefficients.dtype, copy=False)
+
+
+def _sum(coefficients: Any, shares: Any, steps: Any) -> Any:
+    """The sums (2n, m) of series (steps, 2n, order + 1) at m times, ``shares`` after the beginning of their step."""
+    total = np.zeros((len(shares), coefficients.shape[1]), np.result_type(coefficients, shares))
+    for column in np.ascontiguousarray(coefficients.transpose(2, 0, 1))[::-1]:
+        total *= shares[:, None]
+        total += column.take(steps, axis=0)
+    return total.T
 
 
 class TaylorRun(Stepping):
@@ -231,7 +243,7 @@ class TaylorRun(Stepping):
         """Most of a long way in heyoka's own loop, which is quicker than ours but shortens its last step."""
         taylor, work, last = self._taylor, self.work, float(self._taylor.last_h)
         goal = until - 2 * last
-        while last > 0 and goal - taylor.time > 8 * last:
+        while last > 0 and goal - taylor.time > FEW * last:
             if work.steps >= self._limit:
                 raise work.too_many(taylor.time, self.end)
             now, before = taylor.time, np.array(taylor.state)
@@ -243,6 +255,35 @@ class TaylorRun(Stepping):
                 return
             work.steps += int(made)
             work.evaluations += self.order * int(made)
+
+    def first(self, at: Any) -> Any:
+        """Where times lie close together, those of many steps, which heyoka's own loop makes as ``one`` does."""
+        taylor, work, at = self._taylor, self.work, at[:ROWS_AT_A_TIME]
+        last = 0.0 if self._start is None else self.reached - self._start
+        room = min(SERIES_AT_A_TIME, self._limit - work.steps)
+        gaps = np.diff(at, prepend=self.reached)
+        if not gaps[0] > 0 or np.max(gaps) > 2 * last or np.sum(gaps) < FEW * last or room < FEW or self._led:
+            return super().first(at)
+        now, before, found = taylor.dtime, np.array(taylor.state), taylor.tc
+        ends, series = [self.reached], np.empty((room, *found.shape), self._dtype)
+
+        def kept(_: Any) -> bool:
+            series[len(ends) - 1] = found
+            ends.append(taylor.time)
+            return ends[-1] < at[-1] and len(ends) <= room
+
+        goal = self._dtype(ends[0] + FAR * (self._unit + abs(ends[0])))
+        outcome, shortest, *_ = taylor.propagate_until(goal, callback=kept, write_tc=True)
+        least = self._least * max(self._unit, abs(ends[-1]))
+        if outcome != self._heyoka.taylor_outcome.cb_stop or not shortest > least:
+            taylor.dtime, taylor.state[:] = now, before  # once more step by step, to see where it goes wrong
+            return super().first(at)
+        work.steps += len(ends) - 1
+        work.evaluations += self.order * (len(ends) - 1)
+        self._start, self._until = ends[-2], None
+        at, begun = at[: np.searchsorted(at, ends[-1])], np.array(ends)
+        steps = np.searchsorted(begun, at, side="right") - 1
+        return _sum(series[: len(ends) - 1], at - begun[steps], steps) * self._scales[:, None]
 
     def one(self, until: float | None = None) -> None:
         """One step that keeps its series."""

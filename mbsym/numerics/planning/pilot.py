@@ -134,6 +134,14 @@ class Bench:
         targeted = np.isfinite(self.targets)
         return float(np.max(errors[targeted] / self.targets[targeted])), errors
 
+    def parted(self, quantities: Any, other: Any) -> float:
+        """The first time at which two runs differ by more than ``COARSE`` of a size that counts; inf where none is."""
+        counts = np.isfinite(self.targets)
+        with np.errstate(all="ignore"):
+            apart = np.abs(quantities - other)[counts] > COARSE * np.asarray(self.scale)[counts, None]
+        at = np.flatnonzero(np.any(apart, axis=0))
+        return float(self.times[at[0]]) if len(at) else inf
+
 
 def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: float, limit: float) -> Trial | None:
     """The coarsest setting of a method, about, that is good enough; None where none is, or it costs over ``limit``.
@@ -251,8 +259,12 @@ MORE_DIGITS = 2.0**-11
 #: A difference of up to so many times the rounding may be rounding, of which finer tolerances leave all.
 ROUNDED = 4.0
 
-#: Runs further apart than this part of the motion tell nothing of how rounding counts.
+#: Runs further apart than this part of the motion tell nothing of how rounding counts, nor of what finer ones bring.
 COARSE = 0.03
+
+#: Where runs cost more than this, and would part before the end even if the time until then grew by so many times what
+#: it has been growing by, no finer ones are made.
+DEAR, GROWS = 1.0, 1.5
 
 #: Beyond so many operations nothing is compiled in extended arithmetic.
 LONG = 20_000
@@ -262,12 +274,14 @@ LONG = 20_000
 class Yardstick:
     """The finest run, its states all quantities (2n + 1, m); ``known``: its own error as a part of the targets (rho).
 
-    ``start`` is the tolerance at which rho is about what is aimed at, by the runs on the way.
+    ``start`` is the tolerance at which rho is about what is aimed at, by the runs on the way; ``parted`` the time from
+    which on it differs by more than ``COARSE`` from the one before, and nothing is known: inf where it nowhere does.
     """
 
     trial: Trial
     known: float
     start: float
+    parted: float = inf
 
 
 def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most: int = 10_000_000) -> Yardstick:
@@ -278,7 +292,7 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
     longest = float(bench.times[-1]) / PARTS
     if bench.longest is not None:  # a longer one would be cut to it in every run, and two of them be one run
         longest = min(longest, bench.longest)
-    scalar, last, gain, rounding = FLOAT64, inf, USUAL_GAIN, 0.0
+    scalar, last, gain, rounding, parted = FLOAT64, inf, USUAL_GAIN, 0.0, 0.0
     # An error is known by a finer run: the first one leaves room for that.
     tolerance = max(tolerance, method.traits.finest(scalar) / APART**2)
     finest = method.traits.finest(scalar)
@@ -313,18 +327,29 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
             scalar, tolerance = EXTENDED, coarser  # in which there is room for them
             continue
         apart, _ = bench.compared(before.states, now.states)
+        earlier, parted = parted, bench.parted(before.states, now.states)
         if before.scalar != scalar:  # the initial state was rounded alike in all runs before: it shows here first
             rounding = max(rounding, apart * MORE_DIGITS)
         gain = apart / last if 0 < last < inf else USUAL_GAIN
         less = max(min(gain, USUAL_GAIN), _ruled(now, longest, bench)) if gain <= LEAST_GAIN else 1.0
         known = max(apart * less, rounding + min(apart, ROUNDED * rounding))
-        known = max(known, _roundings(scalar) / bench.finest_target)
+        known = max(known, _roundings(scalar) / bench.finest_target) if parted == inf else inf
         if known <= best.known:
             factor = (AIM * goal / apart) ** (1 / USUAL_SLOPE) if apart > 0 else 1.0
-            best = Yardstick(now, known, _rounded(max(coarser * min(factor, 1e3), least)))
-        if known <= KNOWN * goal:
+            best = Yardstick(now, known, _rounded(max(coarser * min(factor, 1e3), least)), parted)
+        if known <= KNOWN * goal or (earlier > 0 and _hopeless(bench, method, now, earlier, parted)):
             return best
         before, last = now, apart
+
+
+def _hopeless(bench: Bench, method: Method, now: Trial, earlier: float, parted: float) -> bool:
+    """Whether runs part before the end even at the finest tolerance, as times grew by the last ``APART``.
+
+    Neighbouring motions that part as exp(lambda t) do so later by log(1/APART)/lambda: by as much each time.
+    """
+    finest = min(method.traits.finest(x) for x in (FLOAT64, EXTENDED) if x == FLOAT64 or _extended(bench, method))
+    more = max(0.0, log(now.fineness / finest) / -log(APART))
+    return now.cost > DEAR and parted + GROWS * max(0.0, parted - earlier) * more < float(bench.times[-1])
 
 
 def _ruled(trial: Trial, longest: float, bench: Bench) -> float:

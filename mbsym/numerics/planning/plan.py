@@ -145,8 +145,14 @@ class Alternative:
     times: float = 1.0
 
 
-def poorly_measured(known: float) -> str:
-    """What is said of a run to measure by that is ``known`` to this part of the sizes only."""
+def poorly_measured(known: float, parted: float = inf) -> str:
+    """What is said of a run to measure by that is ``known`` to this part of the sizes only, as others part from it."""
+    if isfinite(parted):
+        text = (
+            "what settings were measured by is itself lost before the end: two fine runs part from t = [[time]] on; a "
+            "shorter --time helps"
+        )
+        return Message(text, time=f"{parted:.3g}")
     if not isfinite(known):
         return Message("no run could be had to measure settings by")
     return Message("what settings were measured by is itself known to [[known]] only", known=f"{known:.1e}")
@@ -159,7 +165,8 @@ class Plan:
     ``bounds`` has one entry for each quantity that an error was named for, else one for the worst; ``seconds`` is what
     the integration took in the pilot, ``spent`` what choosing took.  ``unshown`` says why the run's own error could not
     be estimated: its accuracy is not shown then.  ``measured_to``: how well the run is known by which settings were
-    measured, a part of the sizes, where that is too little to tell whether what was taken is accurate enough.
+    measured, a part of the sizes, where that is too little to tell whether what was taken is accurate enough; from the
+    time ``parted`` on another fine run differs from that one.
     """
 
     accuracy: Accuracy
@@ -178,11 +185,14 @@ class Plan:
     contradicted: bool = False
     unshown: str = ""
     measured_to: float | None = None
+    parted: float = inf
 
     @property
     def unmeasured(self) -> str:
         """Why it cannot be told whether the setting is accurate enough; nothing where that can be told."""
-        return "" if self.measured_to is None or self.contradicted else poorly_measured(self.measured_to)
+        if self.measured_to is None or self.contradicted:
+            return ""
+        return poorly_measured(self.measured_to, self.parted)
 
     @property
     def bound(self) -> Bound:

@@ -87,7 +87,7 @@ def shares_of(bench: Bench, trial: Trial, stick: Yardstick, model: ModelChoice) 
     measured = DOUBLED * trial.errors + known
     arithmetic, way = np.zeros_like(measured), None  # a part of the integration's share
     other = {FLOAT64: EXTENDED, FLOAT32: FLOAT64}.get(trial.scalar)
-    cheap = trial.cost < CHEAP and other is not None
+    cheap = trial.cost < CHEAP and other is not None and isfinite(stick.known)
     if cheap and other in trial.method.traits.scalars and available(str(other)):
         try:
             twin = bench.run(trial.method, str(other), trial.setting)
@@ -317,7 +317,9 @@ def _none(settled: Settled) -> str:
     """No setting was accurate enough, or none could be told to be."""
     if settled.measured_to is None:
         return Message("none tried is accurate enough")
-    return Message("[[why]]: none can be told to be enough", why=poorly_measured(settled.measured_to))
+    return Message(
+        "[[why]]: none can be told to be enough", why=poorly_measured(settled.measured_to, settled.stick.parted)
+    )
 
 
 def _why_fineness(settled: Settled) -> str:

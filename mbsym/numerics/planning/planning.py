@@ -246,7 +246,9 @@ def planned(
     enough = fits(trial, stick.known, room) and (_over(bounds) <= 1 or bool(too_simple))
     settled = Settled(scene, model, choice, resting, parts, bench, stick, trial, pins.kinds, enough, room, worst)
     items, measured_to = items_of(settled), settled.measured_to
-    more, less = alternatives(bench, trial, model.tried, model.taken, accuracy, goal)
+    more, less = None, None
+    if stick.parted == inf:
+        more, less = alternatives(bench, trial, model.tried, model.taken, accuracy, goal)
     return Plan(
         accuracy,
         end,
@@ -262,6 +264,7 @@ def planned(
         less,
         tuple(text for text in (remark, too_simple) if text),
         measured_to=measured_to,
+        parted=stick.parted,
     )
 
 
@@ -389,7 +392,8 @@ def _settled(
 ) -> Trial:
     """The cheapest setting that is good enough, else the best that there is.
 
-    A method that costs more than what judges it without being good enough is given up.
+    A method that costs more than what judges it without being good enough is given up; where what judges is itself
+    lost before the end, one setting is tried, for none can be told to be good enough.
 
     Raises Breakdown, Unusable.
     """
@@ -398,7 +402,7 @@ def _settled(
         return bench.run(METHODS[name], pins.scalar or FLOAT64, pins.setting, often=True)
     best: Trial | None = None
     begun = len(bench.trials)
-    stiff = choice.stiff
+    stiff, lost = choice.stiff, stick.parted < inf
     for method, scalar in _allowed(bench, model, pins, stiff, many):
         spent = sum(trial.cost for trial in bench.trials[begun:])
         if best is not None and spent > max(EFFORT, TIMES_BEST * best.cost):
@@ -406,12 +410,14 @@ def _settled(
         watch(f"{method.traits.name}, {scalar}")
         if best is None and scalar == FLOAT32:
             break  # what float64 does not reach, fewer digits will not
-        limit = stick.trial.cost if best is None else best.cost
+        limit = 0.0 if lost else stick.trial.cost if best is None else best.cost
         setting = first_setting((method, scalar), stick.start, best, float(bench.times[-1]), bench.spacing)
         trial = _searched(bench, method, scalar, setting, goal, limit)
         if trial is not None and (best is None or trial.cost < best.cost):
             best = trial
-    if best is None and pins.scalar is None:
+        if lost and bench.trials:
+            break
+    if best is None and pins.scalar is None and not lost:
         for method, scalar in in_more_digits():
             if pins.method in (None, method.traits.name):
                 watch(f"{method.traits.name}, {scalar}")

@@ -13,10 +13,10 @@ from dataclasses import replace
 from itertools import islice
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import NOT_THERE, NoClosedForm, SingularPoint
+from mbsym.algebra.failures import NOT_THERE, NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
@@ -24,8 +24,9 @@ from mbsym.mechanics.constraints.programs import constrained_programs
 from mbsym.mechanics.constraints.ranks import is_certain
 from mbsym.mechanics.constraints.states import PRECISION, OnManifold
 from mbsym.mechanics.oracle import State
+from mbsym.mechanics.programs import accelerated
 from mbsym.model.claims import SUMS, Claim
-from mbsym.model.system import System, acceleration_name
+from mbsym.model.system import System
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
@@ -82,7 +83,7 @@ def _along(derived: Derived) -> AlongMotion:
     if tied is None or tied.solved is None:
         raise NoClosedForm("the equations without multipliers have no closed form within the budget")
     programs = constrained_programs(system, derived.ring, [(name.constraint, name.component) for name in tied.names])
-    return AlongMotion(derived.form, tied, equations, programs)
+    return AlongMotion(derived.form, equations, programs)
 
 
 def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
@@ -188,14 +189,10 @@ def accelerated_at(system: System, ring: Ring, tied: Constraints, state: State) 
     names = [tied.names[i] for i in tied.independent]
     programs = constrained_programs(system, ring, [(name.constraint, name.component) for name in names])
     n, m, program = len(system.coordinates), len(names), programs.tree.program
-    nodes = [x for row in programs.tree.mass_matrix for x in row] + [*programs.tree.forcing]
-    nodes += [x for row in programs.jacobian for x in row] + [*programs.acceleration, *programs.velocity]
+    nodes = [x for row in programs.jacobian for x in row] + [*programs.velocity]
     nodes += [program.zero if x is None else x for x in programs.position]
-    values = [arb(x) for x in program.evaluate(nodes, state.values, state.numbers)]
-    parts = iter(values)
-    mass = [list(islice(parts, n)) for _ in range(n)]
-    force, rows = list(islice(parts, n)), [list(islice(parts, n)) for _ in range(m)]
-    needed = list(islice(parts, m))
+    parts = map(arb, program.evaluate(nodes, state.values, state.numbers))
+    rows = [list(islice(parts, n)) for _ in range(m)]
     for kind, errors in ((Message("velocity"), list(islice(parts, m))), (Message("position"), list(islice(parts, m)))):
         for name, row, error in zip(names, rows, errors, strict=True):
             if abs(error) > KEPT * (1 + sum((abs(x) for x in row), arb(0))):
@@ -205,12 +202,4 @@ def accelerated_at(system: System, ring: Ring, tied: Constraints, state: State) 
                     kind=kind,
                     error=shown(abs(error), 3),
                 )
-    whole = [[*mass[i], *(-rows[k][i] for k in range(m))] for i in range(n)]
-    whole += [[*row, *([arb(0)] * m)] for row in rows]
-    right = [*force, *(-x for x in needed)]
-    try:
-        solved = arb_mat(whole).solve(arb_mat(n + m, 1, right))
-    except ZeroDivisionError:
-        raise SingularPoint("the constraints and the masses leave the accelerations open there") from None
-    moved = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
-    return State(state.numbers, {**state.values, **moved})
+    return accelerated(system, state, programs.tree, programs.jacobian, programs.acceleration)

@@ -24,7 +24,8 @@ from mbsym.problems.claims.integrals import of_positions, substituted
 from mbsym.problems.claims.quantities import derived_quantity
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.in_speeds import Field, SpeedEquations
+from mbsym.problems.constraints.integrals import AlongMotion
+from mbsym.problems.in_speeds import SpeedEquations
 
 #: Quantities that are the same whatever the variables are; those of one body among them.
 _QUANTITIES = (
@@ -138,16 +139,16 @@ def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claim
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
         return of_positions(form, result, claimed)
     images = relations(derived.parameters_scene)
-    field = Field(form, equations)
-    outcome, known = Outcome.EXACT, field.keeps(claimed)
+    motion = AlongMotion(form, equations)
+    outcome, known = Outcome.EXACT, motion.keeps(claimed)
     if known is not True and images:
         outcome, claimed = Outcome.RELATIONS, ring.substitute(claimed, images)
-        field = Field(form, substituted(ring, equations, images))
-        known = field.keeps(claimed)
+        motion = AlongMotion(form, substituted(ring, equations, images))
+        known = motion.keeps(claimed)
     if known is True:
         slopes = [ring.derivative(claimed, u.name) for u in form.speeds]
         if all(form.vanishes(slope) is True for slope in slopes):
             return replace(result, outcome=Outcome.FAILS, remark="it is a constant, whatever the motion")
         return replace(result, outcome=outcome)
-    rate = field.rate_in_lowest_terms(claimed)
+    rate = motion.rate_in_lowest_terms(claimed)
     return replace(result, outcome=Outcome.UNDECIDED if known is None else Outcome.FAILS, difference=rate)

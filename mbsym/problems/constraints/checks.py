@@ -27,6 +27,7 @@ from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
+from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.speed_states import all_slopes, completed, variables
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.system import acceleration_name
@@ -156,23 +157,10 @@ def moving(form: SpeedForm, on_manifold: OnManifold, tied: Constraints, programs
 
     In enclosures where quaternions are no rational numbers; values of all variables are told, read off placed bodies.
     """
-    state, names = (on_manifold.enclosed if form.by_quaternion else on_manifold).state, form.system.coordinates
-    program, n, m = programs.tree.program, len(names), len(tied.independent)
+    state = (on_manifold.enclosed if form.by_quaternion else on_manifold).state
     rows = [programs.jacobian[i] for i in tied.independent]
-    nodes = [x for row in programs.tree.mass_matrix for x in row] + [x for row in rows for x in row]
-    nodes += [*programs.tree.forcing, *(programs.acceleration[i] for i in tied.independent)]
-    values = program.evaluate(nodes, state.values, state.numbers)
-    mass, jacobian = values[: n * n], values[n * n : n * n + m * n]
-    right, gamma = values[n * n + m * n : n * n + m * n + n], values[n * n + m * n + n :]
-    zero = state.numbers.zero
-    whole = [[*mass[i * n : i * n + n], *(-jacobian[k * n + i] for k in range(m)), right[i]] for i in range(n)]
-    whole += [[*jacobian[k * n : k * n + n], *[zero] * m, -gamma[k]] for k in range(m)]
-    done = eliminated(whole, range(n + m))
-    if done.rank < n + m:
-        raise ZeroDivisionError("the equations with multipliers are singular there")
-    solved = {column: done.rows[row][n + m] for row, column in done.pivots}
-    moved = {acceleration_name(name): solved[k] for k, name in enumerate(names)}
-    return completed(Oracle(form.system, State(state.numbers, {**state.values, **moved})))
+    needed = [programs.acceleration[i] for i in tied.independent]
+    return completed(Oracle(form.system, accelerated(form.system, state, programs.tree, rows, needed)))
 
 
 def in_time(form: SpeedForm, state: State) -> Carrier:

@@ -1,4 +1,4 @@
-"""Problem 7 with constraints: what the constrained motion keeps.
+"""Problem 7 in speeds and with constraints: what the motion keeps.
 
 With E = M u' - f = J^T lambda a quantity I with  dI/dt = mu . E  (an identity of the open tree) changes at the rate
 
@@ -34,10 +34,11 @@ from flint import ctx
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.failures import NOT_THERE, Failure, NoClosedForm
 from mbsym.algebra.kernel import kernel
 from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.embedding import basis_vector
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import is_certain
@@ -46,37 +47,46 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.system import velocity_name
 from mbsym.problems.constraints.checks import in_time, moving
-from mbsym.problems.constraints.motion import dependent_velocities
-from mbsym.problems.constraints.result import Constraints
+from mbsym.problems.constraints.motion import Embedded, dependent_velocities
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds import GEOMETRIC, NORM, Candidate, candidates
 from mbsym.problems.integrals import ENERGY, Integral, is_independent
 
-# Whether something vanishes along every motion of a constrained system.
+# Whether something vanishes along every motion.
 #
 # With  u' = Y v' + a0  and  Y^T M Y v' = Y^T (f - M a0)  an expression x(s, u, u', t) is a function of positions on
-# the constraints and of independent velocities.  It is tried at exact states on the constraints; that it vanishes is
-# proved in the ring, where the equations without multipliers are short enough and x is linear in u', by
+# the constraints and of independent velocities; without constraints Y = 1 and a0 = 0.  That it vanishes is proved in
+# the ring, where x is linear in u' and the equations without multipliers are short enough, by
 #
 #     det(Y^T M Y) x = 0        v' by Cramer's rule, dependent velocities expressed by the independent ones
 #
-# which does not use the constraints between positions: what vanishes on these alone is verified numerically.
+# which does not use the constraints between positions: what vanishes on these alone is tried at exact states on them,
+# and verified numerically.
 
 
 #: At so many states an expression must vanish.
 STATES = 4
-#: Equations longer than this are not tried for a proof.
+#: Equations without multipliers that are longer than this are not tried for a proof.
 MOST_TERMS, MOST_SPEEDS = 600, 4
 
 
 class AlongMotion:
-    """Expressions along the motions of a system over the ring."""
+    """Expressions along the motions of a system over the ring, of s' = g(s, u, t) and ``equations``.
 
-    def __init__(self, form: SpeedForm, tied: Constraints, equations: Equations, programs: ConstrainedPrograms) -> None:
+    ``programs``: M, f and the rows of constraints, which exact states are taken from.
+    """
+
+    def __init__(self, form: SpeedForm, equations: Equations, programs: ConstrainedPrograms | None = None) -> None:
         self.form, self.ring = form, form.ring
-        self.tied, self.equations, self.programs = tied, equations, programs
-        self.velocities = {} if tied.solved is None else dependent_velocities(form, tied.solved)
+        self.tied, self.equations, self.programs = equations.constraints, equations, programs
+        self.solved = None if self.tied is None else self.tied.solved
+        self.velocities = {} if self.solved is None else dependent_velocities(form, self.solved)
+        #: The independent rows: J, and J u + j.
+        self.rows: list[tuple[Sequence[Polynomial], Polynomial]] = []
+        if self.tied is not None:
+            jacobian, velocity = self.tied.jacobian.polynomials, self.tied.velocity
+            self.rows = [(jacobian[i], velocity[i].polynomial) for i in self.tied.independent]
 
     def restricted(self, x: Polynomial) -> Polynomial:
         """x on the velocities that the constraints allow."""
@@ -92,9 +102,72 @@ class AlongMotion:
         others = [s for s in self.form.positions if s.rate_index not in own]
         return self.ring.substitute(x, {s.rate_index: self.form.rates[s.name] for s in others}) if others else x
 
+    # --- in the ring ---
+
+    @cached_property
+    def _matrices(self) -> Equations | Embedded:
+        """Of the independent velocities.  Raises NoClosedForm where there are none, or they are too long."""
+        if self.tied is None:
+            return self.equations
+        short = self.equations.embedded
+        if short is None or self.solved is None or short.terms > MOST_TERMS or len(short.free) > MOST_SPEEDS:
+            raise NoClosedForm("the equations without multipliers have no closed form within the budget")
+        return short
+
+    @cached_property
+    def determinant(self) -> Polynomial:
+        """det(Y^T M Y)."""
+        return determinant(self.ring, self._matrices.mass_matrix.polynomials)
+
+    @cached_property
+    def _scaled(self) -> list[Polynomial]:
+        """det(Y^T M Y) v' by Cramer's rule."""
+        matrices = self._matrices
+        return cramer(self.ring, matrices.mass_matrix.polynomials, [x.polynomial for x in matrices.forcing])
+
+    def along_speeds(self, slopes: Sequence[Polynomial]) -> list[Polynomial]:
+        """Y^T slopes: derivatives by u' (by u) as those by the independent ones."""
+        if self.tied is None:
+            return list(slopes)
+        assert self.solved is not None
+        basis = [basis_vector(self.ring, self.solved.embedding, place) for place in range(len(self.tied.free))]
+        return [self.restricted(self.ring.dot(slopes, y)) for y in basis]
+
+    def _on_motion(self, slopes: Sequence[Polynomial], rest: Polynomial) -> Polynomial:
+        """det(Y^T M Y) (slopes . u' + rest)."""
+        ring = self.ring
+        if self.solved is not None:
+            rest = self.restricted(rest + ring.dot(slopes, [y.polynomial for y in self.solved.acceleration_shift]))
+        along = ring.dot(self.along_speeds(slopes), self._scaled)
+        return ring.reduce(ring.times(self.determinant, rest) + along)
+
+    def rate(self, x: Polynomial) -> Polynomial:
+        """det(Y^T M Y) dx/dt on the motion, of what holds no u'.  Raises Failure."""
+        return self._on_motion([self.ring.derivative(x, u.name) for u in self.form.speeds], self.form.drift(x))
+
+    def keeps(self, x: Polynomial) -> bool | None:
+        """Whether dx/dt = 0 on every motion; None where the ring cannot decide.  Raises Failure."""
+        return self.form.vanishes(self.rate(x))
+
+    def rate_in_lowest_terms(self, x: Polynomial) -> Formula:
+        """dx/dt on the motion."""
+        return Formula(self.ring, self.ring.ratio(self.rate(x), self.determinant))
+
+    def proves_zero(self, x: Polynomial) -> bool:
+        """Whether x = 0 is an identity; x must be linear in u'."""
+        still = {u.rate_index: self.ring.zero for u in self.form.speeds}
+        try:
+            slopes = [x.derivative(u.rate_index) for u in self.form.speeds]
+            return self.form.vanishes(self._on_motion(slopes, self.ring.substitute(x, still))) is True
+        except Failure:
+            return False
+
+    # --- at states on the constraints ---
+
     @cached_property
     def states(self) -> list[OnManifold]:
         """Exact states on the constraints, or enclosures of some."""
+        assert self.programs is not None
         with ctx.workprec(PRECISION):
             return list(Manifold(self.form.system.without_speeds, self.ring, self.programs).states(STATES))
 
@@ -102,6 +175,8 @@ class AlongMotion:
     def _carried(self) -> list[tuple[OnManifold, Carrier, Carrier]]:
         """Those of the states where the equations have a solution, with their accelerations, and as series in time."""
         carried = []
+        assert self.tied is not None
+        assert self.programs is not None
         with ctx.workprec(PRECISION):
             for on_manifold in self.states:
                 with suppress(*NOT_THERE):
@@ -125,42 +200,19 @@ class AlongMotion:
         evaluated = self.values(x, rate)
         return len(evaluated) == STATES and not any(is_certain(value) for _, value in evaluated)
 
-    def along_speeds(self, slopes: Sequence[Polynomial]) -> list[Polynomial]:
-        """Y^T slopes: derivatives by u' (by u) as those by the independent ones."""
-        assert self.tied.solved is not None
-        basis = [basis_vector(self.ring, self.tied.solved.embedding, place) for place in range(len(self.tied.free))]
-        return [self.restricted(self.ring.dot(slopes, y)) for y in basis]
-
-    def proves_zero(self, x: Polynomial) -> bool:
-        """Whether x = 0 is an identity; x must be linear in u'."""
-        ring, embedded, solved = self.ring, self.equations.embedded, self.tied.solved
-        if embedded is None or solved is None or embedded.terms > MOST_TERMS or len(embedded.free) > MOST_SPEEDS:
-            return False
-        try:
-            slopes = [x.derivative(u.rate_index) for u in self.form.speeds]
-            still = {u.rate_index: ring.zero for u in self.form.speeds}
-            a0 = [y.polynomial for y in solved.acceleration_shift]
-            rest = self.restricted(ring.substitute(x, still) + ring.dot(slopes, a0))
-            mass = embedded.mass_matrix.polynomials
-            rates = cramer(ring, mass, [y.polynomial for y in embedded.forcing])
-            left = ring.times(determinant(ring, mass), rest) + ring.dot(self.along_speeds(slopes), rates)
-            return self.form.vanishes(ring.reduce(left)) is True
-        except Failure:
-            return False
-
 
 def integrals(
-    form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, programs: ConstrainedPrograms
+    form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, programs: ConstrainedPrograms | None = None
 ) -> tuple[Integral, ...]:
     """The energy, momenta, and products of unit vectors that are kept; of long equations those with multipliers."""
-    assert equations.constraints is not None
-    motion = _Kept(form, equations.constraints, equations, programs)
+    motion = _Kept(form, equations, programs)
     conserved: list[Integral] = []
     known: list[Polynomial] = []
     for integral, multipliers in motion.candidates(scene, energy):
         x = integral.formula.polynomial
         with suppress(Failure):  # what is too long is not known to be conserved
-            geometric, on = integral.kind in (GEOMETRIC, NORM), motion.as_known(x)
+            geometric = integral.kind in (GEOMETRIC, NORM)
+            on = x if geometric else motion.as_known(x)
             if not geometric and not motion.says_something(integral, on, known):
                 continue
             status = motion.status(integral, multipliers)
@@ -182,12 +234,13 @@ class _Kept(AlongMotion):
 
     def displacements(self, kinetic: Polynomial) -> Iterator[tuple[str, list[Polynomial]]]:
         """All constant xi with  J xi = 0  and  xi . (d/dt dT/du - E) = 0  on the velocities that constraints allow."""
+        if self.tied is None:
+            return
         form, ring = self.form, self.ring
         own = {velocity_name(name): name for name in form.coordinates}
         rates = [form.rate(ring.derivative(kinetic, u.name)) for u in form.speeds]
         rest = [self.restricted(rate - residual) for rate, residual in zip(rates, self._residuals, strict=True)]
-        rows = [self.tied.jacobian.polynomials[i] for i in self.tied.independent]
-        for xi in kernel(ring, rest, *rows):
+        for xi in kernel(ring, rest, *(row for row, _ in self.rows)):
             name = form.speeds[max(xi)].name
             if len(xi) > 1:  # others are momenta of one coordinate or speed, which are tried anyway
                 yield own.get(name, name), [xi.get(k, ring.zero) for k in range(len(form.speeds))]
@@ -214,7 +267,11 @@ class _Kept(AlongMotion):
         known = bool(multipliers) or integral.kind in (GEOMETRIC, NORM)
         if known and self._by_multipliers(self.form.rate(x), multipliers):
             return Certainty.PROVED
-        if self.equations.embedded is None or integral.kind in (ENERGY, "cyclic momentum"):
+        if integral.kind in (ENERGY, "cyclic momentum"):
+            return None
+        if self.tied is None:
+            return Certainty.PROVED if self.keeps(x) else None
+        if self.equations.embedded is None:
             return None
         if not self.vanishes_at_states(x, rate=True) or self.vanishes_at_states(x):
             return None
@@ -225,17 +282,16 @@ class _Kept(AlongMotion):
 
     def _by_multipliers(self, left: Polynomial, multipliers: Sequence[Polynomial]) -> bool:
         """Whether a rate is mu . E on allowed velocities, and J mu vanishes or is J u + j in every row."""
-        form, ring, tied = self.form, self.ring, self.tied
+        form, ring = self.form, self.ring
         for factor, residual in zip(multipliers, self._residuals, strict=False):
             if not ring.vanishes(factor):
                 left = left - ring.times(factor, residual)
         if not self.vanishes(left):
             return False
-        works = [ring.dot(tied.jacobian.polynomials[i], multipliers) for i in tied.independent if multipliers]
-        rows = [tied.velocity[i].polynomial for i in tied.independent]
+        works = [(ring.dot(row, multipliers), velocity) for row, velocity in self.rows if multipliers]
         return all(
-            form.vanishes(work) is True or form.vanishes(ring.reduce(work - row)) is True
-            for work, row in zip(works, rows, strict=False)
+            form.vanishes(work) is True or form.vanishes(ring.reduce(work - velocity)) is True
+            for work, velocity in works
         )
 
     @cached_property

@@ -5,7 +5,7 @@ Where V_0, V_1, ..., V_m are integrals of x' = X(x), so is  K = V_0 + lambda_1 V
     {x: grad K(x) = 0}
 
 is carried into itself by the motion, for every choice of the multipliers.  These equations are taken apart exactly,
-over the parameters and the multipliers, by what they are linear in (``algebra.splitting``): each branch is a family of
+over the parameters and the multipliers, by what they are linear in: each branch is a family of
 steady motions, or an invariant manifold with the motion on it.  The norms of unit vectors are integrals with
 multipliers of their own.  Each set is checked without its derivation: d/dt of every equation of the set vanishes on the
 set by the equations of motion.

@@ -23,7 +23,8 @@ Everything is about the linear equations; asymptotic stability and instability c
 feedback being the same (Lyapunov's first method).
 
 Source: Thomson & Tait; N. G. Chetaev, The Stability of Motion (1961); D. R. Merkin, Introduction to the Theory of
-Stability (1997), chapter 6; W. T. Thomson's and E. E. Zajac's pervasive damping; Kalman, Hautus.
+Stability (1997), chapter 6; E. E. Zajac, The Kelvin-Tait-Chetaev theorem and extensions (1964), on pervasive damping;
+Kalman, Hautus.
 
 Example:
 

@@ -15,21 +15,14 @@ kind): at p = 0 terms of higher order may make the motion stable, asymptotically
 this method that needs it, as it needs roots that do not coincide: there the motion may be stable.  Of exactly linear
 equations linear theory decides what equality does, where a parameter can be solved for on p = 0, and it is told with
 the condition.  In potential systems coinciding roots do no harm: their discriminants are listed, and needed for
-nothing.
-K > 0 is sufficient where the energy does not grow.
+nothing.  K > 0 is sufficient where the energy does not grow.
 
-"Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
-gyroscopically stabilised only; stable in first approximation only; unstable; depends on the parameters (the
-cases say how); undecided (no theorem applies).  At numerical values it is decided exactly (irrational ones by
-enclosures).  A theorem is named where all its hypotheses are shown:
-
-* Lagrange-Dirichlet (G = 0), Routh: M > 0, K > 0, N = 0, D >= 0, and the energy of the nonlinear system does not grow;
-* Kelvin-Chetaev: N = 0, D > 0, and K > 0 or det K != 0; or D = N = 0 and det K < 0;
-* Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for the roots of turned steady spins;
-* theory of linear equations: the equations of motion are exactly linear (M constant, f of first degree in q and q',
-  proved in the ring; whatever is given by its matrices): no root to the right and those on the imaginary axis
-  semisimple: stable; a Jordan block there: unstable, like a power of t.  Then no nonlinear system is left open.  A
-  drift of bodies along directions on which nothing depends is told apart, as that of cyclic coordinates is.
+"Necessary conditions hold" is not "stable": the verdict is a word of its own ('mbsym explain undecided' tells of one).
+At numerical values it is decided exactly (irrational ones by enclosures).  A theorem is named where all its hypotheses
+are shown, those on the nonlinear system included ('mbsym explain Kelvin-Chetaev' tells of one).  Where the equations of
+motion are exactly linear (M constant, f of first degree in q and q', proved in the ring; whatever is given by its
+matrices) no nonlinear system is left open.  A drift of bodies along directions on which nothing depends is told apart
+then, as that of cyclic coordinates is.
 
 "But for a drift of cyclic coordinates" is stability with respect to a part of the variables (V. V. Rumyantsev): the
 other coordinates and all velocities.  Where cyclic momenta are constant what is asymptotic is so at given ones.

@@ -53,7 +53,7 @@ class Word(StrEnum):
         return self in (Word.GYROSCOPIC, Word.CRITICAL, Word.UNDECIDED)
 
 
-#: What each of them says, in the words of docs/theory.md.
+#: What each of them says.
 MEANINGS = {
     Word.ASYMPTOTIC: "disturbed motions stay near and come back",
     Word.ASYMPTOTIC_BUT_TURNED: "disturbed motions stay near and come back to the same motion, turned in space",
@@ -202,6 +202,7 @@ class Because(Enum):
     ORDER_LOWER = auto()
     VARIES = auto()  # (with what)
     RANK_LOST = auto()  # (rank there, rank near it)
+    OTHER_BRANCH = auto()  # (rank there, lower rank elsewhere)
     NOT_THE_VALUE = auto()  # (of which parameter)
     MOTION_NOT_THERE = auto()  # (condition, value)
     MOTION_OPEN = auto()  # (condition)
@@ -246,8 +247,8 @@ class Reason:
 # * Routh, by Chaplygin's integrals: of a nonholonomic system with one position q beside velocities w, w' = q' A(q, w)
 #   and q'' = F(q, q'^2, w), w is a function of q along every motion, and what is left, q'' = f(q, q'^2), is reversed
 #   with the time: a centre where q rests and its roots are imaginary (bodies of revolution that roll on a plane).
-# * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or
-#   none in a system of one coordinate, where the converse holds.
+# * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum, or none, where the
+#   converse holds if the energy is constant and no gyroscopic forces act (``bundle``).
 # * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
 # * Exactly linear equations (a Penning trap, a rotating saddle, whatever is given by its matrices): their solutions are
 #   known.  No root to the right and those on the axis semisimple, zero ones too: stable; a Jordan block on the axis:
@@ -285,7 +286,7 @@ class Fact(Enum):
     #: The equations of motion are their own first approximation (``exact_linearity``).
     EXACTLY_LINEAR = "the equations of motion are exactly linear"
     JORDAN_BLOCK = "a root on the imaginary axis is not semisimple"
-    #: K has one null direction, and terms of higher order make a strict minimum of it, or none (``degenerate``).
+    #: K >= 0 has one or two null directions; terms of higher order make a strict minimum of V, or none (``bundle``).
     MINIMUM_OF_HIGHER_ORDER = "V has a strict minimum, by terms of higher order"
     NO_MINIMUM_IN_LOWEST_FORM = "the lowest terms of V, where its second derivative vanishes, have no minimum"
     NO_OTHER_FORCES = "gyroscopic forces are not there, or V is a function of one coordinate alone"

@@ -25,9 +25,9 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import rational_states
 from mbsym.model.system import System
 from mbsym.problems import integrals
+from mbsym.problems.constraints.integrals import AlongMotion
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds import Field
 from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
 from mbsym.problems.polynomial_integrals.result import FUNCTION
@@ -124,10 +124,10 @@ def blocks(form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, 
     forcing = [f.polynomial for f in equations.forcing]
     own = [ring.context.gen(u.index) - at_rest for u, at_rest in zip(form.speeds, form.drifts, strict=True)]
     whole = ring.reduce(ring.dot(momenta, own) - kinetic - force)
-    field = Field(form, equations)
+    motion = AlongMotion(form, equations)
 
     def keeps(x: Polynomial) -> Certainty | None:
-        rate = (field.rate(x),) if declared else integrals.rate_on_motion(scene, equations, x)
+        rate = (motion.rate(x),) if declared else integrals.rate_on_motion(scene, equations, x)
         if rate is not None:
             zero = form.vanishes(put_in(ring, rate[0], images))
             return None if zero is False else Certainty.PROVED if zero else Certainty.UNDECIDED

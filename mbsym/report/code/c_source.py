@@ -19,14 +19,13 @@ from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, angle_name
-from mbsym.mechanics.programs import generalized_energy
 from mbsym.model.quantities import marked, told_units
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
-from mbsym.report.code.functions import Function, Functions, c_definition, identifier, prescribed_value
+from mbsym.report.code.functions import Functions, c_definition, identifier, prescribed_value
 from mbsym.report.code.identifiers import number, prefix_of, spelled
-from mbsym.report.code.model_code import programs_of, solved, undetermined
+from mbsym.report.code.model_code import FUNCTIONS, functions_of, programs_of, solved, undetermined
 from mbsym.report.code.named_dynamics import bodies as bodies_of
 from mbsym.report.code.named_dynamics import named_dynamics
 from mbsym.report.environment import rendered
@@ -68,9 +67,6 @@ DECLARED = """
 #: The matrix of accelerations and multipliers stands on the stack.
 MOST_UNKNOWNS, SPACE = 300, "more than a megabyte"
 
-#: What has a body of its own; the generalised energy has none where it is the energy.
-FUNCTIONS = ("mass", "forcing", "energy", "generalized", "accelerations", "jacobian", "reactions")
-
 
 def call(function: str, argument: str) -> str:
     """A function of C's library, or what stands for it; a table's own."""
@@ -102,40 +98,19 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
     reserved |= {"y", "yd"} if system.speeds else set()
     members = injective(system.parameter_names, proposed, taken=reserved)
     writer = Functions(system, DIALECT, reserved, proposed, "3.14159265358979323846")
-    upper = [(i, j) for i in range(n) for j in range(i, n)]
     known = solved(analysis)
-    forward, slopes = known.forward, known.slopes
     tied = None
     if system.constraints and code:
         from mbsym.report.code.constrained_code import tied_code  # few systems have constraints
 
-        tied, _, _ = tied_code(analysis, writer)
+        tied = tied_code(analysis, writer)
         if n + len(tied.rows if tied else ()) > MOST_UNKNOWNS:
             raise NoClosedForm(
                 "more than [[most]] accelerations and multipliers: C would need [[space]] of stack",
                 most=MOST_UNKNOWNS,
                 space=SPACE,
             )
-    functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
-    entries: list[tuple[int, int]] = []
-    if bodies and code:
-        functions["mass"] = writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper])
-        functions["forcing"] = writer.function(code.program, code.forcing)
-        functions["energy"] = writer.function(code.program, [code.energy])
-        generalized = generalized_energy(code, system)
-        if generalized is not code.energy:
-            functions["generalized"] = writer.function(code.program, [generalized])
-    if bodies and forward and known.reactions:
-        functions["reactions"] = writer.function(forward.program, [x for row in known.reactions for x in row])
-    if bodies and forward and not tied:
-        functions["accelerations"] = writer.function(forward.program, forward.accelerations)
-    if slopes:
-        assert forward is not None
-        entries = [
-            (i, j) for i, row in enumerate(slopes) for j, node in enumerate(row) if not forward.program.vanishes(node)
-        ]
-        if bodies:
-            functions["jacobian"] = writer.function(forward.program, [slopes[i][j] for i, j in entries])
+    functions, entries = functions_of(analysis, writer, not tied) if bodies else (dict.fromkeys(FUNCTIONS), [])
     named = named_dynamics(analysis) if code and whole else None
     return rendered(
         template,
@@ -159,8 +134,8 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         undetermined=fill(comment(undetermined(analysis)), 110),
         has={
             "code": code is not None,
-            "solved": forward is not None,
-            "slopes": slopes is not None,
+            "solved": known.forward is not None,
+            "slopes": known.slopes is not None,
             "reactions": bool(known.reactions),
             "inverse": bool(named and named.inverse),
             "forward": bool(named and named.forward),
@@ -168,13 +143,13 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
             "gravity": bool(named and named.gravity),
         },
         tied=tied,
-        speeds=_speeds(analysis, writer) if functions["accelerations"] or forward else None,
+        speeds=_speeds(analysis, writer) if known.forward else None,
         quaternions=any(isinstance(rotation, Quaternion) for body in system.bodies for rotation in body.orientation),
         functions=functions,
         named=bodies_of(named, writer, comment) if named and bodies else None,
         frames=[comment(frame.name) for frame in named.frames] if named else [],
         without=wrap(comment(named.told_without), 110, break_long_words=False) if named else [],
-        upper=upper,
+        upper=[(i, j) for i in range(n) for j in range(i, n)],
         entries=entries,
         lookups=[c_definition(table) for table in writer.tables],
     )

@@ -23,11 +23,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HamiltonCode:
-    """``unpacked`` is what the code calls the entries of y = (q, p); ``momenta`` are those of a state (q, q')."""
+    """``unpacked`` is what the code calls the entries of y = (s, p); ``state`` are p of a state (q, q'), or all of y
+    where s are not q."""
 
+    positions: tuple[str, ...]
+    plain: bool
     names: tuple[str, ...]
     unpacked: tuple[str, ...]
-    momenta: Function
+    state: Function
     hamiltonian: Function
     rates: Function
 
@@ -64,8 +67,8 @@ def canonical_code(analysis: Analysis, problems: Sequence[int], writer: Function
     forms = forms_of(analysis, (*problems, 3) if 3 in analysis.problems else problems)
     code, missing = programs_of(analysis)
     lacking = [f"There is no code of {_TITLES[name]}: {why.reason}" for name, why in forms.failures if name in _TITLES]
-    if code is None or analysis.system.inputs:
-        reason = missing if code is None else "inputs are not taken into account there"
+    if analysis.system.inputs or (code is None and (forms.routh or (forms.hamilton and forms.hamilton.plain))):
+        reason = "inputs are not taken into account there" if analysis.system.inputs else missing
         there = [title for name, title in _TITLES.items() if getattr(forms, name) is not None]
         return FormsCode(None, None, (*lacking, *(f"There is no code of {title}: {reason}" for title in there)))
     names = {name for form in (forms.hamilton, forms.routh) if form is not None for name in form.momenta}
@@ -91,9 +94,11 @@ class _Code:
 
     def _hamilton(self, hamilton: Hamilton) -> HamiltonCode:
         return HamiltonCode(
+            positions=hamilton.positions,
+            plain=hamilton.plain,
             names=hamilton.momenta,
-            unpacked=self._called((*self.system.coordinates, *hamilton.momenta)),
-            momenta=self._momenta(self.system.coordinates),
+            unpacked=self._called((*hamilton.positions, *hamilton.momenta)),
+            state=self._momenta(self.system.coordinates) if hamilton.plain else self._state(hamilton),
             hamiltonian=self._function([hamilton.hamiltonian], hamilton.momenta),
             rates=self._function([*hamilton.velocities, *hamilton.rates], hamilton.momenta),
         )
@@ -126,10 +131,19 @@ class _Code:
         known = dict(zip(self.system.coordinates, momenta(code, self.system), strict=True))
         return self.writer.function(code.program, [known[name] for name in coordinates])
 
+    def _state(self, hamilton: Hamilton) -> Function:
+        """(s, p) at (q, q')."""
+        form, program = self.analysis.form, Program()
+        nodes = form.state_in_coordinates(program)
+        own = dict(zip((x.name for x in (*form.positions, *form.speeds)), nodes, strict=True))
+        carry = Carrier(hamilton.hamiltonian.ring, program, program_environment(self.system, program) | own)
+        momenta = [carry(x.polynomial) for x in hamilton.momenta_in_velocities]
+        return self.writer.function(program, [*(own[name] for name in hamilton.positions), *momenta])
+
     def _function(self, formulas: Sequence[Formula], names: Sequence[str]) -> Function:
         """Formulas in which momenta are names."""
         program = Program()
         environment = program_environment(self.system, program)
-        environment |= {name: program.input(name) for name in names}
+        environment |= {name: program.input(name) for name in (*names, *self.system.variables)}
         carry = Carrier(formulas[0].ring, program, environment)
         return self.writer.function(program, [carry(x.polynomial) for x in formulas])

@@ -72,7 +72,7 @@ class Functions:
     def function(self, program: Program, outputs: Iterable[Node]) -> Function:
         """A body for the outputs, prescribed quantities computed from the time first."""
         outputs = list(outputs)
-        if self.dialect.tables:
+        if self.dialect.tables and self.system.tables:
             called = (program.instructions[number].operation for number in program.live(outputs))
             self.tables |= {name: None for name in called if isinstance(name, Tabulated)}
         body = listing(program, outputs, self.names, self.dialect, self.reserved)

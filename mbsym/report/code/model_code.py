@@ -44,6 +44,7 @@ from mbsym.problems.integrals import (
     whole_momenta,
 )
 from mbsym.report.code import programs as open_trees
+from mbsym.report.code.functions import Function, Functions
 from mbsym.report.code.named_dynamics import NamedDynamics, named_dynamics
 
 if TYPE_CHECKING:
@@ -53,6 +54,9 @@ if TYPE_CHECKING:
 
 #: Indices into an array: (), (i,) or (i, j).
 Place = tuple[int, ...]
+
+#: What has a body of its own.
+FUNCTIONS = ("mass", "forcing", "energy", "generalized", "accelerations", "jacobian", "reactions")
 
 #: A Jacobian that takes about more operations than this is left out.
 LARGEST_JACOBIAN = 100_000
@@ -189,6 +193,39 @@ def _reactions(
             total = [x + weight * y for x, y in zip(total, [*force, *moment], strict=True)]
         totals.append(tuple(total))
     return tuple(totals), ""
+
+
+def functions_of(
+    analysis: Analysis, writer: Functions, accelerated: bool = False
+) -> tuple[dict[str, Function | None], list[tuple[int, int]]]:
+    """Bodies of functions in the writer's language, None for those that there are not.
+
+    M is there by its upper half, the generalised energy where it is another quantity than T - U; d q''/d(q, q') by the
+    entries whose places are told besides, reactions joint after joint; q'' if these are to be ``accelerated``.
+    """
+    code, known, system = programs_of(analysis)[0], solved(analysis), analysis.system
+    functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
+    places: list[tuple[int, int]] = []
+    if code:
+        n = len(system.coordinates)
+        upper = [code.mass_matrix[i][j] for i in range(n) for j in range(i, n)]
+        functions["mass"] = writer.function(code.program, upper)
+        functions["forcing"] = writer.function(code.program, code.forcing)
+        functions["energy"] = writer.function(code.program, [code.energy])
+        generalized = generalized_energy(code, system)
+        if generalized is not code.energy:
+            functions["generalized"] = writer.function(code.program, [generalized])
+    if known.forward:
+        program = known.forward.program
+        if known.reactions:
+            functions["reactions"] = writer.function(program, [x for row in known.reactions for x in row])
+        if accelerated:
+            functions["accelerations"] = writer.function(program, known.forward.accelerations)
+        if known.slopes is not None:
+            nodes = {(i, j): x for i, row in enumerate(known.slopes) for j, x in enumerate(row)}
+            places = [place for place, x in nodes.items() if not program.vanishes(x)]
+            functions["jacobian"] = writer.function(program, [nodes[place] for place in places])
+    return functions, places
 
 
 def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:

@@ -23,7 +23,6 @@ from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, angle_name, listing
-from mbsym.mechanics.programs import Programs, generalized_energy
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.quantities import told_units, unit_of
 from mbsym.model.speeds import Quaternion
@@ -42,7 +41,7 @@ from mbsym.report.code.functions import (
     words_of_inputs,
 )
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
+from mbsym.report.code.model_code import first_integrals, functions_of, programs_of, solved, undetermined
 from mbsym.report.code.named_dynamics import bodies, named_dynamics
 from mbsym.report.environment import rendered
 from mbsym.report.sections import section_of
@@ -74,8 +73,8 @@ TIED = frozenset({
 
 #: What a module that has Hamilton's or Routh's form calls something besides.
 IN_MOMENTA = frozenset({
-    "MOMENTA", "canonical_state", "hamiltonian", "canonical_rhs", "constants", "LEFT", "IGNORED", "CONSTANTS",
-    "reduced_state", "reduced_rhs", "reduced_potential", "ignored_rates", "places", "s",
+    "MOMENTA", "CANONICAL_POSITIONS", "canonical_state", "hamiltonian", "canonical_rhs", "constants", "LEFT", "IGNORED",
+    "CONSTANTS", "reduced_state", "reduced_rhs", "reduced_potential", "ignored_rates", "places", "s",
 })  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
@@ -99,7 +98,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     if system.constraints:
         from mbsym.report.code.constrained_code import tied_code
 
-        tied, code, no_code = tied_code(analysis, writer)
+        tied = tied_code(analysis, writer)
     speeds = None
     if system.speeds and (tied or not system.constraints):
         from mbsym.report.code.speed_code import speed_code
@@ -112,7 +111,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         forms = canonical_code(analysis, problems, writer)
     named = named_dynamics(analysis) if code else None
     n = len(system.coordinates)
-    upper = [(i, j) for i in range(n) for j in range(i, n)]
+    functions, places = functions_of(analysis, writer)
     known = solved(analysis)
     conserved = first_integrals(analysis, problems)
     parameters = parameters_of(system, writer)
@@ -147,11 +146,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         quaternions=any(isinstance(rotation, Quaternion) for body in system.bodies for rotation in body.orientation),
         forms=forms,
         lacking=[plain(line) for line in forms.lacking] if forms else [],
-        upper=upper,
-        mass=code and writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
-        forcing=code and writer.function(code.program, code.forcing),
-        energy=code and writer.function(code.program, [code.energy]),
-        generalized=_generalized(writer, code, system),
+        upper=[(i, j) for i in range(n) for j in range(i, n)],
+        **functions,
         prefix=prefix_of(system.name),
         example=f"{next(iter(system.parameter_names), next(iter(system.coordinates), 'x'))}=2",
         integrals=conserved,
@@ -165,10 +161,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         named=named and bodies(named, writer, plain),
         without=wrap(named.told_without, 110, break_long_words=False) if named else [],
         conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
-        slopes=_slopes(writer, known),
+        slopes=functions["jacobian"] and (functions["jacobian"], places),
         no_slopes=plain(known.no_slopes or known.no_forward),
         no_reactions=plain(known.no_reactions),
-        reactions=_reactions(writer, known),
         undetermined=wrap(plain(undetermined(analysis)), 112, break_long_words=False),
         related=[item for item in ordered(parameters) if item.needs],
         names=writer.names,
@@ -184,30 +179,6 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         lookups=[python_definition(table, "np", typed=True) for table in writer.tables],
         unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
     )
-
-
-def _generalized(writer: _Module, code: Programs | None, system: System) -> Function | None:
-    """The code of T2 - T0 - U, where that is another quantity than T - U."""
-    if code is None:
-        return None
-    node = generalized_energy(code, system)
-    return None if node is code.energy else writer.function(code.program, [node])
-
-
-def _reactions(writer: _Module, known: Solved) -> Function | None:
-    """Forces and moments in the joints that the description names, joint after joint."""
-    if known.forward is None or not known.reactions:
-        return None
-    return writer.function(known.forward.program, [x for row in known.reactions for x in row])
-
-
-def _slopes(writer: _Module, known: Solved) -> tuple[Function, list[tuple[int, int]]] | None:
-    """d q''/d(q, q') entry by entry, zeros left out."""
-    if known.slopes is None or known.forward is None:
-        return None
-    program = known.forward.program
-    places = [(i, j) for i, row in enumerate(known.slopes) for j, node in enumerate(row) if not program.vanishes(node)]
-    return writer.function(program, [known.slopes[i][j] for i, j in places]), places
 
 
 def plain(words: str) -> str:

@@ -62,7 +62,7 @@ class CriticalValueEquilibrium(Part, frozen=True):
 class CriticalValue(Part, frozen=True):
     """a critical value"""
 
-    value: Annotated[Number, "exact"]
+    value: Annotated[Number, "exact, unless it is tried"]
     intervals: Annotated[list[int | None], "the intervals below and above, by number from 0; null beyond an end"]
     events: Annotated[
         list[
@@ -83,6 +83,7 @@ class CriticalValue(Part, frozen=True):
     ]
     verdict_changes: Annotated[bool, "whether a verdict differs on the two sides"]
     continuum: Annotated[bool, "whether some equilibria there are not isolated"]
+    tried: Annotated[bool, "whether it is not solved: numbers of equilibria at values tried near it differ"]
     border: Annotated[
         bool,
         "whether on some solution an unknown is at infinity, a root or denominator zero, or the mass matrix or the "

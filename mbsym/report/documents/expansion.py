@@ -120,6 +120,10 @@ class Expansion(SlowManifold[str], frozen=True, kw_only=True):
     measured: Annotated[Measured, ASIDE]
 
 
+#: Of the field ``averaged_motion_at_values``.
+AT_VALUES = "verdict of problem 6 on the averaged motion at the given values; null where there is none"
+
+
 class Average(Head, frozen=True, kw_only=True):
     """The effective potential of a system that is shaken fast, and how good it is; formulas in Python syntax."""
 
@@ -129,4 +133,5 @@ class Average(Head, frozen=True, kw_only=True):
     vibrational: Annotated[str, "what the phases add to the potential energy"]
     potential: Annotated[str, "the effective potential energy, but for constants"]
     beside: Annotated[list[str], "coordinates on which forces act that have no part in it, and act as they did"]
+    averaged_motion_at_values: Annotated[str | None, AT_VALUES]
     measured: Annotated[Measured, ASIDE]

@@ -248,6 +248,8 @@ def event_words(events: Iterable[Event]) -> Message:
 def critical_words(branches: Branches, at: Cell) -> str:
     """What happens at a critical value; "" for nothing that is shown."""
     critical = branches.critical(at)
+    if critical.tried:
+        return Message("near it the number changes, found by trying")
     if critical.balance is False:
         return Message(EVENTS[Event.DEGENERATE])
     parts = [event_words(critical.events)] if critical.events else []

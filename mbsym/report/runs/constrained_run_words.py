@@ -81,7 +81,7 @@ def start_lines(closed: Closed, system: System) -> Iterator[Message]:
             "the closest)"
         )
     yield joined([Message(text), *held], "; ")
-    largest = sorted(closed.moves, key=lambda move: -abs(move.found - move.given) / (1 + abs(move.given)))
+    largest = sorted(closed.moves, key=lambda move: -move.part)
     for move in largest[:MOST_MOVES]:
         taken = with_unit(_shown(move.found), units[move.name])
         yield Message(

@@ -22,10 +22,12 @@ from mbsym.report.content import (
     Subheading,
     Symbol,
     equalities,
+    joined,
     named,
     numbered,
     paragraph,
     say,
+    speeds,
 )
 from mbsym.report.results import no_result
 
@@ -40,9 +42,9 @@ def content(results: Results) -> Iterator[Block]:
     if named_ones.forms.routh is not None:
         yield from _of_routh(named_ones.forms.routh, named_ones.routh)
     if named_ones.forms.hamilton is not None:
-        yield from _of_hamilton(named_ones.forms.hamilton, named_ones.hamilton, results.system.coordinates)
+        yield from _of_hamilton(named_ones.forms.hamilton, named_ones.hamilton, bool(results.system.constraints))
     if named_ones.forms.brackets is not None:
-        yield from _of_brackets(named_ones.forms.brackets)
+        yield from _of_brackets(named_ones.forms.brackets, named_ones.forms.hamilton)
     for form, failure in named_ones.forms.failures:
         yield Subheading((Said(TITLES[form]),))
         yield no_result(failure)
@@ -80,33 +82,71 @@ def _of_routh(routh: Routh, denominators: Sequence[tuple[Formula, Formula]]) -> 
     yield from equalities(rates, "routh:rate")
 
 
-def _of_hamilton(
-    hamilton: Hamilton, denominators: Sequence[tuple[Formula, Formula]], coordinates: Sequence[str]
-) -> Iterator[Block]:
+def _of_hamilton(hamilton: Hamilton, denominators: Sequence[tuple[Formula, Formula]], tied: bool) -> Iterator[Block]:
     ring = hamilton.hamiltonian.ring
     yield Subheading((Said(TITLES["hamilton"]),))
-    yield paragraph(
-        Said(
-            r"Momenta $p = \partial L/\partial \dot q$, Hamilton's function $H = p \cdot \dot q - L$ and the canonical "
-            r"equations $\dot q = \partial H/\partial p$, $\dot p = -\partial H/\partial q + Q$ with the forces $Q$ "
-            "that have no force function."
-        )
-    )
+    yield paragraph(joined(_meaning(hamilton, tied), " "))
     yield from equalities(denominators, "canonical:Delta")
     momenta = [Name(x, ring=ring) for x in hamilton.momenta]
     yield from equalities(zip(momenta, hamilton.momenta_in_velocities, strict=True), "momentum")
     yield Display(Relation(Symbol("H"), "=", hamilton.hamiltonian), "H")
-    yield from equalities(zip((Name(x, 1) for x in coordinates), hamilton.velocities, strict=True), "canonical:q")
+    if hamilton.structure is not None and hamilton.in_quasi_momenta:
+        yield Matrices(Symbol("W"), hamilton.structure, False, "W")
+    yield from equalities(
+        zip((Name(x, 1) for x in hamilton.positions), hamilton.velocities, strict=True), "canonical:q"
+    )
     yield from equalities(zip((replace(x, dots=1) for x in momenta), hamilton.rates, strict=True), "canonical:p")
 
 
-def _of_brackets(brackets: Brackets) -> Iterator[Block]:
+def _meaning(hamilton: Hamilton, tied: bool) -> Iterator[Said]:
+    """What p, H and the equations are."""
+    if hamilton.plain:
+        yield Said(
+            r"Momenta $p = \partial L/\partial \dot q$, Hamilton's function $H = p \cdot \dot q - L$ and the canonical "
+            r"equations $\dot q = \partial H/\partial p$, $\dot p = -\partial H/\partial q + Q$ with the forces $Q$ "
+            "that have no force function."
+        )
+        return
+    yield say(
+        r"Momenta $p = \partial L/\partial u$ of $u = ([[speeds]])$, with the other velocities expressed by these, and "
+        r"Hamilton's function $H = p \cdot u - L$, on the manifold of the constraints, which stay beside the equations."
+        if tied
+        else r"Momenta $p = \partial L/\partial u$ of the speeds $u = ([[speeds]])$ and Hamilton's function "
+        r"$H = p \cdot u - L$.",
+        speeds=speeds(hamilton.speeds),
+    )
+    if hamilton.integrable is False:
+        yield Said(
+            "The constraints are not integrable: the energy is kept or lost as in Hamilton's equations, but the rates "
+            "of the momenta may have terms that are of the constraints alone, and Poisson brackets would violate "
+            "Jacobi's identity."
+        )
+    elif hamilton.integrable is None:
+        yield Said("Whether the constraints are integrable is undecided; the equations hold in any case.")
+    elif hamilton.in_quasi_momenta:
+        yield Said(r"With Poisson brackets $\{p_i, p_j\} = W_{ij}$ these are the equations of Poincaré and Chetaev.")
+    elif tied and hamilton.structure is not None:
+        yield Said(
+            r"The constraints are integrable, and the equations canonical: $\dot q = Y \, \partial H/\partial p + y_0$ "
+            r"and $\dot p = Y^T (Q - \partial H/\partial q)$ with the forces $Q$ that have no force function."
+        )
+
+
+def _of_brackets(brackets: Brackets, hamilton: Hamilton | None) -> Iterator[Block]:
     yield paragraph(Said("The first integrals of problem 7 in coordinates and momenta:"))
     for k, (name, value) in enumerate(zip(brackets.names, brackets.formulas, strict=True), start=1):
         yield Display(Relation(Symbol("F", str(k)), "=", value), f"canonical:F:{k}", (worded(name),))
     if len(brackets.names) < 2:
         return
-    if brackets.in_involution:
+    if hamilton is not None and not hamilton.plain:
+        yield paragraph(
+            Said(r"They are in involution: all Poisson brackets $\{F_i, F_j\}$ are zero.")
+            if brackets.in_involution
+            else Said(
+                r"Poisson brackets $\{F_i, F_j\}$; those that are not written are zero, or follow by a change of sign."
+            )
+        )
+    elif brackets.in_involution:
         yield paragraph(
             Said(
                 r"They are in involution: all Poisson brackets $\{F_i, F_j\} = \frac{\partial F_i}{\partial q} \cdot "
@@ -114,14 +154,14 @@ def _of_brackets(brackets: Brackets) -> Iterator[Block]:
                 r"F_j}{\partial q}$ are zero."
             )
         )
-        return
-    yield paragraph(
-        Said(
-            r"Poisson brackets $\{F_i, F_j\} = \frac{\partial F_i}{\partial q} \cdot \frac{\partial F_j}{\partial "
-            r"p} - \frac{\partial F_i}{\partial p} \cdot \frac{\partial F_j}{\partial q}$; those that are not "
-            "written are zero, or follow by a change of sign."
+    else:
+        yield paragraph(
+            Said(
+                r"Poisson brackets $\{F_i, F_j\} = \frac{\partial F_i}{\partial q} \cdot \frac{\partial F_j}{\partial "
+                r"p} - \frac{\partial F_i}{\partial p} \cdot \frac{\partial F_j}{\partial q}$; those that are not "
+                "written are zero, or follow by a change of sign."
+            )
         )
-    )
     for i, j in combinations(range(1, len(brackets.names) + 1), 2):
         value = brackets.matrix[i - 1, j - 1]
         if not value.is_zero:

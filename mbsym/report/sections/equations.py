@@ -339,6 +339,8 @@ def _of_reactions(results: Results) -> Iterator[Block]:
     ]
     if results.system.constraints:
         sentences.append(r"With the multipliers, $R + \sum \lambda_i R^{(i)}$ and $L + \sum \lambda_i L^{(i)}$.")
+    if results.system.speeds:
+        sentences.append("They are told in generalised coordinates, velocities and accelerations.")
     yield paragraph(joined(map(Said, sentences), " "))
     for reaction in reactions:
         k = str(results.numbers[reaction.body])

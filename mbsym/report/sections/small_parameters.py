@@ -61,14 +61,11 @@ def _averaging(judged: JudgedAverage, write: Write) -> doc.Averaged:
     }
     if judged.withdrawn:
         return doc.Averaged(**taken, reason="withdrawn: the measured distance does not shrink as it should")
-    assert averaging.analysis is not None
-    verdict = averaging.analysis.optional("stability")
-    word = None if verdict is None or verdict.numerical is None else verdict.numerical.word.value
     return doc.Averaged(
         **taken,
         vibrational=write(averaged.vibrational),
         potential=write(averaged.potential),
-        averaged_motion_at_values=word,
+        averaged_motion_at_values=averaging.word_at_values,
     )
 
 

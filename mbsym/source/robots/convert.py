@@ -38,7 +38,12 @@ from mbsym.source.scope import MAX_NAME, why_no_name
 from mbsym.source.yaml_writer import scalar_text
 
 _NUMBER = re.compile(r"[0-9.eE+-]+\Z")
-_FREE = Moving(Joint("", "free"), ("x", "y", "z", "yaw", "pitch", "roll"))
+#: What the names of a joint's coordinates end in, where it has several.
+_SEVERAL = {
+    "free": ("x", "y", "z", "yaw", "pitch", "roll"),
+    "ball": ("yaw", "pitch", "roll"),
+    "planar": ("x", "y", "yaw"),
+}
 #: Names that are made here: of coordinates, inputs, parameters.
 _OWN = re.compile(r"[qpcmJbk]\d+[a-z]*|g|x|y|z|yaw|pitch|roll|tau_.*")
 #: The link that is the ground itself, as ROS has it.
@@ -89,6 +94,7 @@ class _Writer:
     loads: list[str] = field(default_factory=list)
     limits: list[str] = field(default_factory=list)
     inputs: list[str] = field(default_factory=list)
+    initial: list[str] = field(default_factory=list)
     constraints: list[str] = field(default_factory=list)
     joints: list[str] = field(default_factory=list)
     still: list[str] = field(default_factory=list)
@@ -126,6 +132,7 @@ class _Writer:
         lines += ["loads:", *self.loads] if self.loads else []
         lines += ["constraints:", *self.constraints] if self.constraints else []
         lines += ["limits:", *self.limits] if self.limits else []
+        lines += ["initial:", *self.initial] if self.initial else []
         return Described("\n".join(lines) + "\n", tuple(self.joints), self.frames, tuple(self.still))
 
     def _told(self) -> str:
@@ -163,7 +170,7 @@ class _Writer:
     def _stem(self, joint: Joint, count: int) -> str:
         """What a joint's coordinate is called: by its number, or as the joint where nothing else can be called so."""
         name = "_".join(re.findall("[A-Za-z0-9]+", joint.name))
-        several = joint.kind in ("free", "ball")
+        several = joint.kind in _SEVERAL
         if not self.named or several or why_no_name(name) or _OWN.fullmatch(name) or name in self.stems:
             return f"q{count}"
         self.stems.add(name)
@@ -241,9 +248,10 @@ class _Writer:
             and link.name == self.robot.links[0].name
             and not any(joint.kind == "free" for joint in link.joints)
         ):
-            moving.insert(0, _FREE)
-        if any(motion.joint.kind == "free" for motion in moving):
-            place, turned = NOWHERE, ()  # its coordinates say where it is, from the ground
+            moving.insert(0, Moving(Joint("", "free"), _SEVERAL["free"]))
+        if any(motion.joint.kind == "free" and motion.joint.start for motion in moving):
+            # Its coordinates say where it is, from the ground, whatever frame it stands in.
+            place, turned, link = NOWHERE, (), replace(link, parent=GROUND)
         number = len(self.names) + 1
         *before, last = steps(
             self._lengths(place, f"p{number}", f"origin of {link.name} on its carrier"), turned, tuple(moving)
@@ -302,15 +310,22 @@ class _Writer:
                 self._load(f"damper: {{coordinate: {first}, coefficient: {joint.damping}{factor}}}")
             return Moving(joint, (), _linear(multiplier, first, offset))
         names = self._coordinates(joint, stem)
+        self.initial += [f"  {q}: {at}" for q, at in zip(names, joint.start, strict=False) if at != "0"]
+        if joint.kind == "planar":
+            return Moving(joint, names, names[2])
         return Moving(joint, names, _linear("1", names[0], opposite(joint.ref)) if len(names) == 1 else "")
 
     def _coordinates(self, joint: Joint, stem: str) -> tuple[str, ...]:
         self.joints.append(joint.name)
         number = len(self.joints)
-        if joint.kind == "free":
-            return tuple(f"{stem}{part}" for part in ("x", "y", "z", "yaw", "pitch", "roll"))
-        if joint.kind == "ball":
-            return tuple(f"{stem}{part}" for part in ("yaw", "pitch", "roll"))
+        if joint.kind in _SEVERAL:
+            names = tuple(f"{stem}{part}" for part in _SEVERAL[joint.kind])
+            if self.damping and joint.damping != "0":  # R = b (v^2 + omega^2)/2
+                value = self._named(f"b{number}", joint.damping, f"damping of joint {joint.name}")
+                squares = " + ".join(f"{name}_dot**2" for name in names)
+                yaw, pitch, roll = names[-3:]
+                self._load(f"rayleigh: {value}*({squares} - 2*{yaw}_dot*{roll}_dot*sin({pitch}))/2")
+            return names
         if joint.limits is not None:
             self.limits.append(f"  {stem}: {_list(joint.limits)}{self._note(joint.name)}")
         if self.damping and joint.damping != "0":

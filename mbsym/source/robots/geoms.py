@@ -57,11 +57,7 @@ def orientation(element: Element, angles: Angles, reader: Reader) -> Turns:
             return ()
         return _of_quaternion(math.cos(half), *(math.sin(half) * float(part) / length for part in (x, y, z)))
     if element.get("quat"):
-        parts = tuple(map(float, reader.numbers(element, "quat", 4)))
-        if not any(parts):
-            reader.error("bad-axis", "a quaternion of length zero", element)
-            return ()
-        return _of_quaternion(*parts)
+        return of_quaternion(reader.numbers(element, "quat", 4), element, reader)
     if element.get("xyaxes"):
         six = [float(part) for part in reader.numbers(element, "xyaxes", 6)]
         return _of_axes(_unit(six[0], six[1], six[2]), (six[3], six[4], six[5]))
@@ -96,10 +92,19 @@ def turns_onto(x: float, y: float, z: float) -> Turns:
     return _of_quaternion(math.cos(half), -math.sin(half) * y / level, math.sin(half) * x / level, 0.0)
 
 
+def of_quaternion(parts: tuple[str, ...], element: Element, reader: Reader) -> Turns:
+    """The turn by a printed quaternion (w, x, y, z) of any length but zero."""
+    w, x, y, z = map(float, parts)
+    if not any((w, x, y, z)):
+        reader.error("bad-axis", "a quaternion of length zero", element)
+        return ()
+    return _of_quaternion(w, x, y, z)
+
+
 def _of_quaternion(w: float, x: float, y: float, z: float) -> Turns:
     n = w * w + x * x + y * y + z * z
     s = 2 / n
-    return _of_matrix(
+    return of_matrix(
         (
             (1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)),
             (s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)),
@@ -118,18 +123,19 @@ def _of_axes(x: Row, near: Row) -> Turns:
     along = sum(a * b for a, b in zip(x, near, strict=True))
     y = _unit(*(b - along * a for a, b in zip(x, near, strict=True)))
     z = (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0])
-    return _of_matrix(((x[0], y[0], z[0]), (x[1], y[1], z[1]), (x[2], y[2], z[2])))
+    return of_matrix(((x[0], y[0], z[0]), (x[1], y[1], z[1]), (x[2], y[2], z[2])))
 
 
-def _of_matrix(matrix: Matrix) -> Turns:
+def of_matrix(matrix: Matrix) -> Turns:
     """R = Rz(yaw) Ry(pitch) Rx(roll), which as passive turns are about the axes 3, 2, 1 in that order."""
-    (a, b, _), (d, e, _), (g, h, i) = matrix
+    (a, b, c), (d, e, f), (g, _, _) = matrix
     flat = math.hypot(a, d)
+    yaw = math.atan2(d, a) if flat > _LEVEL else math.atan2(-b, e)
+    cosine, sine = math.cos(yaw), math.sin(yaw)
     pitch = math.atan2(-g, flat)
-    if flat > _LEVEL:
-        yaw, roll = math.atan2(d, a), math.atan2(h, i)
-    else:
-        yaw, roll = math.atan2(-b, e), 0.0
+    # The second row of Rz(-yaw) R is (0, cos(roll), -sin(roll)): near pitch = pi/2, where neither yaw nor roll is
+    # known well, it keeps what they make together.
+    roll = math.atan2(sine * c - cosine * f, cosine * e - sine * b) if flat > _LEVEL else 0.0
     turns = ((3, yaw), (2, pitch), (1, roll))
     return tuple((axis, words) for axis, value in turns if (words := _spelled(value)) != "0")
 
@@ -156,8 +162,8 @@ _EXACT_DIGITS = 20
 
 
 def is_solid(geom: Element) -> bool:
-    """Whether it is a body whose inertia follows from its sizes."""
-    return geom.get("type", "sphere") in _SIZES
+    """Whether it is a body whose inertia follows from its sizes, which are not fitted to a mesh."""
+    return geom.get("type", "sphere") in _SIZES and not geom.get("mesh")
 
 
 def checked(geom: Element, reader: Reader) -> bool:

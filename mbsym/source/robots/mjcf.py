@@ -6,7 +6,7 @@ pitch, roll, exact where these are multiples of pi/4 or pi/6 and else rounded to
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -14,7 +14,17 @@ from fractions import Fraction
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import ROUNDING, inertia_violation
-from mbsym.source.robots.geoms import TURNING, Angles, checked, is_solid, matter_of, orientation, shape_of, weighs
+from mbsym.source.robots.geoms import (
+    TURNING,
+    Angles,
+    checked,
+    is_solid,
+    matter_of,
+    of_matrix,
+    orientation,
+    shape_of,
+    weighs,
+)
 from mbsym.source.robots.reader import (
     NOWHERE,
     Element,
@@ -27,7 +37,7 @@ from mbsym.source.robots.reader import (
     number,
     words_of,
 )
-from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Moments, Robot, Turns, ties
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Moments, Robot, Turns, at_zero, ties
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
 
@@ -38,6 +48,7 @@ _SECTIONS = {
     "contact": "contact pair",
     "deformable": "deformable body",
     "extension": "plugin",
+    "keyframe": "state to begin in (<key>)",
 }
 _SAVED = 'let MuJoCo save the compiled model with <compiler saveinertial="true"/>'
 
@@ -142,12 +153,23 @@ def read_mjcf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
         reader.error("missing-key", "there is no <body>", worlds[0])
     name = root.get("model") or "robot"
     gravity = _gravity(root, reader)
-    tied = tuple(ties(bodies.tied(root), {link.name: link for link in links}, bodies.site_links, reader))
+    places = {link.name: link for link in links}
+    tied = tuple(ties(bodies.tied(root), places, bodies.site_links, reader))
+    links = [replace(link, joints=tuple(_started(joint, link, places) for joint in link.joints)) for link in links]
     if not complaints.errors:
         links = _of_mass(links, root, reader)
     if complaints.errors:
         return None
     return Robot(name, tuple(links), gravity, reader.left_out(), reader.snapped(), tied)
+
+
+def _started(joint: Joint, link: Link, links: Mapping[str, Link]) -> Joint:
+    """A free joint with the place, yaw, pitch and roll that its body has in the file."""
+    if joint.kind != "free":
+        return joint
+    place, ((a, d, g), (b, e, h), (c, f, i)) = at_zero(link.name, links)
+    angles = dict(of_matrix(((a, b, c), (d, e, f), (g, h, i))))
+    return replace(joint, start=(*place, *(angles.get(axis, "0") for axis in (3, 2, 1))))
 
 
 def _of_mass(links: list[Link], root: Element, reader: Reader) -> list[Link]:
@@ -222,6 +244,8 @@ def _driven(root: Element, reader: Reader, defaults: Defaults, joints: set[str])
             driven.add(joint)
             if element.tag != "motor":
                 reader.leave_out(f"law of an actuator ({element.tag})")
+            if any(element.get(key) for key in ("armature", "damping")):
+                reader.leave_out("armature and damping of an actuator")
             if any(element.get(key) for key in ("ctrlrange", "forcerange")):
                 reader.leave_out("limits of an actuator")
             count = len(element.get("gear").split())
@@ -359,9 +383,8 @@ class _Bodies:
         reader = self.reader
         place, turned = self.pose(element)
         joints = tuple(self.joints(name, element, childclass))
-        if any(joint.kind == "free" for joint in joints) and parent in self.world_frames:
-            parent = GROUND  # its coordinates say where it is, whatever frame it stands in
-        if any(joint.kind == "free" for joint in joints) and (parent != GROUND or len(joints) > 1):
+        alone = len(joints) == 1 and parent in self.world_frames
+        if any(joint.kind == "free" for joint in joints) and not alone:
             reader.error("unsupported", "a free joint moves a body of the world, alone", element)
         for child in element.children:
             if child.tag in _INSIDE:
@@ -437,16 +460,20 @@ class _Bodies:
         if kind == "free" and float(armature):
             reader.leave_out("armature of a free joint")
             armature = "0"
-        if kind in ("ball", "free") and (
-            float(reader.number(element, "damping")) or float(reader.number(element, "stiffness"))
-        ):
-            reader.leave_out("damping and stiffness of ball and free joints")
+        if kind in ("ball", "free") and float(reader.number(element, "stiffness")):
+            reader.leave_out("stiffness of ball and free joints")
+        if kind == "ball" and element.get("range") and element.get("limited", "auto") != "false":
+            reader.leave_out("limit of a ball joint")
+        for key in ("damping", "stiffness"):
+            if len(element.get(key).split()) > 1:
+                reader.error("unsupported", f"'{key}' that is a polynomial is not read", element, "give one number")
         if any(float(part) for part in reader.numbers(element, "springdamper", 2, "0 0")):
             reader.error(
                 "unsupported", "a joint with 'springdamper' is not read", element, "give stiffness and damping"
             )
         turns = kind == "turn"
-        ref = reader.number(element, "ref")
+        ref = reader.number(element, "ref") if kind in ("turn", "slide") else "0"
+        ref = self.angle(ref) if turns else ref
         limited = element.get("limited", "auto")
         limits = None
         if (
@@ -469,7 +496,8 @@ class _Bodies:
             self.angle(rest) if turns else rest,
             armature,
             kind in ("turn", "slide") and element.get("name") in self.driven,
-            ref=self.angle(ref) if turns else ref if kind == "slide" else "0",
+            ref=ref,
+            start=(ref,) if ref != "0" else (),
         )
 
     def angle(self, text: str) -> str:

@@ -35,13 +35,14 @@ class Inertial:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A movement of a link.  ``kind`` is turn, slide, ball or free; ``axis`` and ``anchor`` are in axes of the link.
+    """A movement of a link: ``kind`` is turn, slide, ball, planar or free; ``axis``, ``anchor`` are in its axes.
 
     ``limits`` are the least and greatest value; ``damping`` and ``stiffness`` act on the joint's coordinate, the
     latter about ``rest``.  ``armature`` is the inertia of a rotor, which adds armature q'^2/2 to the kinetic energy.
     A joint is ``driven`` where something can exert a torque or a force in it, of ``effort`` at most ("": not said).
     Its coordinate is ``ref`` where it is at zero.  One that is ``led`` has no coordinate: it stands at
-    multiplier * q + offset, with q that of the joint of this name.
+    multiplier * q + offset, with q that of the joint of this name.  ``start`` is what its coordinates are where the
+    file has it stand; those of a free joint are then measured from the ground, and else from where the link is placed.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Joint:
     effort: str = ""
     led: tuple[str, str, str] | None = None
     ref: str = "0"
+    start: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,6 +252,12 @@ def _seen_from(first: str, second: str, point: Texts, links: Mapping[str, Link])
     return seen
 
 
+def at_zero(name: str, links: Mapping[str, Link]) -> tuple[Texts, tuple[list[float], ...]]:
+    """Where a link is where all joints are at zero, and its axes, seen from the ground."""
+    origin, *tips = (_seen_from(name, GROUND, point, links) for point in (NOWHERE, *_UNITS))
+    return _texts(origin), tuple([a - b for a, b in zip(tip, origin, strict=True)] for tip in tips)
+
+
 def _texts(values: Iterable[float]) -> Texts:
     x, y, z = (number(repr(round(value, _DECIMALS) + 0.0)) for value in values)
     return x, y, z
@@ -321,11 +329,14 @@ def _moves(moving: Moving) -> list[Step]:
     match joint.kind:
         case "slide":
             return [Step(along(joint.axis, value), (), names)]
-        case "turn":
-            turns = [
-                Step(turns=(turn,), coordinates=names if value in turn[1] else ())
-                for turn in turns_about(joint.axis, value)
-            ]
+        case "turn" | "planar":
+            about = turns_about(joint.axis, value)
+            turns = [Step(turns=(turn,), coordinates=names[-1:] if value in turn[1] else ()) for turn in about]
+            if joint.kind == "planar":  # where the axis is a coordinate axis, along the two others
+                middle = len(about) // 2
+                across = ["0", "0", "0"]
+                across[about[middle][0] % 3], across[(about[middle][0] + 1) % 3] = names[:2]
+                turns.insert(middle, Step((across[0], across[1], across[2]), (), names[:2]))
         case _:
             angles = names[-3:]
             turns = [

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
+from mbsym.source.robots.geoms import of_quaternion
 from mbsym.source.robots.reader import (
     Element,
     Reader,
@@ -29,7 +30,17 @@ from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shap
 #: The attributes of an inertia.
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
-_KINDS = {"revolute": "turn", "continuous": "turn", "prismatic": "slide", "floating": "free", "fixed": ""}
+_KINDS = {
+    "revolute": "turn",
+    "continuous": "turn",
+    "prismatic": "slide",
+    "floating": "free",
+    "planar": "planar",
+    "fixed": "",
+}
+
+#: Joints with several coordinates: nothing drives, brakes, leads or follows one.
+_SEVERAL = ("free", "planar")
 
 #: Elements that rigid bodies in a tree have no place for.
 _LEFT_OUT = {
@@ -212,8 +223,9 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
         reader.leave_out("safety controller")
     dynamics, limit = element.first("dynamics"), element.first("limit")
     damping = "0" if dynamics is None else reader.number(dynamics, "damping")
-    if kind == "free" and float(damping):
-        reader.leave_out("damping of a floating joint")
+    several = f"{element.get('type')} joint" if kind in _SEVERAL else ""
+    if several and float(damping):
+        reader.leave_out(f"damping of a {several}")
         damping = "0"
     if dynamics is not None and float(reader.number(dynamics, "friction")):
         reader.leave_out("dry friction of a joint")
@@ -224,15 +236,17 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
             if any(map(float, limits)):
                 reader.leave_out("limits of a joint that exclude every position, or all but one")
             limits = None
-    if kind == "free" and element.first("mimic") is not None:
-        reader.leave_out("mimicry of a floating joint")
-    led = _led(element, named, reader) if kind != "free" else None
+    if several and element.first("mimic") is not None:
+        reader.leave_out(f"mimicry of a {several}")
+    led = None if several else _led(element, named, reader)
     if led is not None and limits is not None:
         reader.leave_out("limits of a joint that mimics another")
     effort = "0" if limit is None else reader.number(limit, "effort")
     moves = element.get("type") in ("revolute", "prismatic", "continuous")
     if limit is not None and moves and limit.get("velocity", "0").strip() not in ("", "0", "0.0"):  # not read at all
         reader.leave_out("limit of the velocity of a joint")
+    if limit is not None and any(limit.get(key) for key in ("acceleration", "deceleration", "jerk")):
+        reader.leave_out("limits of the acceleration or jerk of a joint")
     return (
         Joint(
             element.get("name"),
@@ -240,7 +254,7 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
             axis,
             limits=limits,
             damping=damping,
-            driven=kind != "free",
+            driven=not several,
             effort=effort if float(effort) > 0 else "",
             led=led,
         ),
@@ -266,9 +280,10 @@ def _led(element: Element, named: Mapping[str, Element], reader: Reader) -> tupl
             )
             reader.error("no-tree" if leader_element is not None else "unknown-name", what, mimic)
             return None
-        if leader_element.get("type") in ("fixed", "floating"):
-            if leader_element.get("type") == "floating":
-                reader.error("unsupported", "a floating joint cannot be mimicked", mimic)
+        kind = leader_element.get("type")
+        if _KINDS.get(kind, "") in ("", *_SEVERAL):
+            if _KINDS.get(kind):
+                reader.error("unsupported", f"a {kind} joint cannot be mimicked", mimic)
             return leader, "0", _decimal(offset)
         seen.append(leader)
         element = leader_element
@@ -320,7 +335,13 @@ def _shape(visual: Element, reader: Reader) -> Shape | None:
 def _origin(element: Element, reader: Reader) -> tuple[Texts, Turns]:
     """(place, turns)."""
     origin = element.first("origin")
-    return reader.three(origin, "xyz"), fixed_turns(reader.three(origin, "rpy", raw=True), reader)
+    place = reader.three(origin, "xyz")
+    if origin is not None and origin.get("quat_xyzw"):
+        if origin.get("rpy"):
+            reader.error("conflicting-keys", "<origin> is turned in two ways: rpy and quat_xyzw", origin)
+        x, y, z, w = reader.numbers(origin, "quat_xyzw", 4)
+        return place, of_quaternion((w, x, y, z), origin, reader)
+    return place, fixed_turns(reader.three(origin, "rpy", raw=True), reader)
 
 
 def fixed_turns(rpy: Texts, reader: Reader) -> Turns:

@@ -80,7 +80,8 @@ def rows(branches: Branches) -> list[tuple[str, str, str, str]]:
 
     for first, last in branches.spans():
         table += _critical_row(branches, branches.between(first)[0])
-        count = f"{len(branches.equilibria(first))}" + ("" if first.certainty is Certainty.PROVED else " ?")
+        number = len(branches.equilibria(first))
+        count = str(number) if first.certainty is Certainty.PROVED else Message("[[number]], not proved", number=number)
         stable = stable_words(x.verdict for x in branches.equilibria(first))
         table.append((f"{value(branches.ends(first)[0])} .. {value(branches.ends(last)[1])}", count, stable, ""))
     return table + (_critical_row(branches, branches.between(branches.intervals[-1])[1]) if branches.intervals else [])

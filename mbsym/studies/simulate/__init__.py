@@ -19,6 +19,7 @@ from mbsym.studies.described import Source, analysis_of, laws_of, public
 from mbsym.studies.request import (
     LEAST_ERROR,
     MOST_ERROR,
+    Anew,
     Errors,
     Flag,
     Formulas,
@@ -202,8 +203,9 @@ class Command(Request):
     "falling" keep one direction of =, "mod 2*pi" takes an angle modulo a turn (never done unasked).  events.csv has
     every time of an --event that dense output shows; --stop ends the run; a --section is a table and a picture.
 
-    --input says what an input of the description is: a number, or a formula in t, coordinates, velocities, parameters
-    and tables.  Without it an input is held at its value on the unperturbed motion (0 unless motion: gives another).
+    --input says what an input of the description is: a number, or a formula in t, coordinates, velocities, speeds,
+    parameters and tables.  Without it an input is held at its value on the unperturbed motion (0 unless motion: gives
+    another).
 
     --accuracy 1e-6 chooses order of gravity, linear or nonlinear, parameters to drop, method, tolerance, arithmetic;
     prints one bound, and the command that repeats the run.  --method, --tolerance, --gravity, ... settle a part of it.
@@ -278,6 +280,7 @@ class Command(Request):
     bodies: Annotated[bool, Flag(None, "What each body does, in bodies.csv; the same as format bodies-csv.")] = False
     animate: Annotated[bool, Flag(None, "animation.html and animation.gif; the same as formats html,gif.")] = False
     verbose: Annotated[bool, Flag(None, "Tell how it was done, too: method, setting, work, what rests.", "-v")] = False
+    anew: Anew = False
 
     @property
     def formats(self) -> tuple[str, ...]:
@@ -441,6 +444,7 @@ def refusal(error: Exception, context: Asked, request: Command) -> Refusal | Non
 RARE = (
     "every", "step", "max_step", "arithmetic", "step_limit", "invariants", "estimate", "whole", "certify_seconds",
     "section", "axes", "variables", "gravity", "linear", "without", "members", "seed", "sampling", "path", "fixed",
+    "anew",
 )  # fmt: skip
 
 STUDY = Study(

@@ -15,7 +15,7 @@ from mbsym.report.unit_text import pretty
 from mbsym.studies.closing import not_closed
 from mbsym.studies.simulate.files import ensemble_files, motion_files
 from mbsym.studies.simulate.fitting import Many, Motion, Planned
-from mbsym.studies.study import Answer, Asked, Exit, Line, Refusal, heading, line
+from mbsym.studies.study import BEFORE, Answer, Asked, Exit, Line, Refusal, heading, line
 from mbsym.studies.study import refused as refused_because
 
 if TYPE_CHECKING:
@@ -44,11 +44,17 @@ def _planned(context: Asked, request: Command, result: Planned) -> Answer:
     from mbsym.report.runs.plan_words import bound_lines, choice_lines
 
     plan, unit = result.plan, pretty(time_unit(context.motion.system))
-    lines, last = [facts((*bound_lines(plan, unit), *choice_lines(plan)))], _repeat(context, request, result.request)
+    told = facts((*_measured(result.before), *bound_lines(plan, unit), *choice_lines(plan)))
+    lines, last = [told], _repeat(context, request, result.request)
     if plan.reached:
         return Answer(lines, last=last)
     missed = Message("no plan is shown to reach the accuracy asked for")
     return Answer(lines, {}, [missed], Exit.BROKEN_DOWN, last=last)
+
+
+def _measured(before: bool) -> Iterator[tuple[str, Message]]:
+    if before:
+        yield "note", Message(BEFORE)
 
 
 def _many(context: Asked, request: Command, result: Many) -> Answer:
@@ -72,7 +78,8 @@ def _motion(context: Asked, request: Command, result: Motion) -> Answer:
     run = result.run
     files = motion_files(run, result.derivatives, request.formats)
     how = method_lines(run) if request.verbose else ()
-    lines: list[Line | Block] = [facts((*result_lines(run, context.file), *how))]
+    told = (*_measured(result.before), *result_lines(run, context.file), *how)
+    lines: list[Line | Block] = [facts(told)]
     if result.derivatives is not None:
         from mbsym.report.runs.orbit_files import sensitivity_sentences  # few ask for them
 

@@ -9,12 +9,15 @@ from fractions import Fraction
 from itertools import product
 from math import ceil, inf, prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from mbsym import simulation
 from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.safe import quoted
+from mbsym.expressions.tree import names
 from mbsym.model.constraints import listed as listed_constraints
+from mbsym.numerics.accuracy import Lacking, NoEstimate
 from mbsym.simulation import Request as Run
 from mbsym.source.scope import closest, did_you_mean, listed
 from mbsym.studies.simulate import WORK, Command, Request
@@ -140,6 +143,8 @@ def settled(context: Asked, request: Command) -> Settled:
         _sensitive(request.sensitivity, scenario, wrong)
     _check_constrained(system, run_request, wrong)
     _check_states(seen, run_request, request.formats, wrong)
+    if scenario is not None and seen is not system:
+        _check_laws(scenario, wrong)
     if request.accuracy is None:
         return Settled(run_request, None, wrong)
     from mbsym.simulation.accurate import read_accuracy, settled_by  # few ask for an accuracy
@@ -369,6 +374,16 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
         wrong.complain("--method", "unsuitable-method", Message(text, method=request.method), these)
 
 
+def _check_laws(scenario: Scenario, wrong: Reasons) -> None:
+    """Complains of angles in laws of inputs that are no variables of a run, unit vectors or quaternions are."""
+    replaced = {name for body in scenario.system.bodies if body.orientation for name in body.own_angles}
+    for driven in scenario.inputs:
+        for name in sorted({without_velocity(name) for name in names(driven.law)} & replaced):
+            text = "the angle '[[name]]' in the law of [[input]] is no variable of this run"
+            message = Message(text, name=name, input=driven.name)
+            wrong.complain("--input", "variables", message, joined(("write it in speeds", worded(WAY_OUT)), "; "))
+
+
 def _sensitive(named: tuple[str, ...], scenario: Scenario, wrong: Reasons) -> None:
     """Complains of what the motion cannot be differentiated by."""
     if not named:
@@ -416,7 +431,10 @@ def _continued(request: Run, path: Path, system: System, wrong: Reasons) -> Run:
     try:
         earlier = read_earlier(path, system)
     except UnfitRun as error:
-        wrong.complain("--continue", "unfit-run", error.reason, "take the simulation.json of a run of this FILE")
+        hint = "take the simulation.json of a run of this FILE"
+        if system.variables:
+            hint = "take the simulation.json of a run of this FILE with --variables coordinates, and go on with this"
+        wrong.complain("--continue", "unfit-run", error.reason, hint)
         return request
     if 0 < request.time <= earlier.time:
         there = f"{earlier.time:.9g}"
@@ -498,19 +516,24 @@ def _check_values(request: Run, scenario: Scenario | None, wrong: Reasons) -> No
 
 @dataclass(frozen=True)
 class Motion:
-    """One motion, with its derivatives by some names where these are asked for, or what broke them off."""
+    """One motion, with its derivatives by some names where these are asked for, or what broke them off.
+
+    ``before``: its plan, or its error estimate, was measured by an earlier command.
+    """
 
     run: simulation.Simulation
     derivatives: Sensitivities | None = None
     stopped: Failure | KeyboardInterrupt | None = None
+    before: bool = False
 
 
 @dataclass(frozen=True)
 class Planned:
-    """What an accuracy chooses, and the request that repeats its run."""
+    """What an accuracy chooses and the request that repeats its run; ``before``: an earlier command measured it."""
 
     plan: Plan
     request: Run
+    before: bool = False
 
 
 #: What varies, with its values.
@@ -555,13 +578,14 @@ def derived(context: Asked, request: Command, watch: Watch) -> Result:
 def _derived(context: Asked, request: Command, watch: Watch) -> Result:
     from mbsym.algebra.failures import Failure
 
-    scenario, settling = context.motion, settled(context, request)
+    scenario, settling, recall = context.motion, settled(context, request), _Recalling(context, request.anew)
     run_request = settling.request
     if settling.goal is not None and request.plan:
         from mbsym.simulation.accurate import plan_for
 
         watch(PLANNING)
-        return Planned(*plan_for(scenario, run_request, *settling.goal))
+        plan = plan_for(scenario, run_request, *settling.goal, recall=recall)
+        return Planned(*plan, recall.before)
     if request.vary:
         return _many(context, request, run_request, watch)
     at, stage = _watched(run_request.time, watch)
@@ -569,21 +593,43 @@ def _derived(context: Asked, request: Command, watch: Watch) -> Result:
     if settling.goal is not None:
         from mbsym.simulation.accurate import simulate_accurately
 
-        run = simulate_accurately(scenario, stored, *settling.goal, at, stage)
+        run = simulate_accurately(scenario, stored, *settling.goal, at, stage, recall=recall)
     else:
-        run = simulation.simulate(scenario, stored, at, stage)
-    result = Motion(run)
+        run = simulation.simulate(scenario, stored, at, stage, recall)
+    result = Motion(run, before=recall.before)
     if request.sensitivity and run.whole:
         from mbsym.simulation.motions import sensitivities
 
         watch("how it answers to changes")
         try:
             values = simulation.read_values(scenario.system, request.values)
-            result = Motion(run, sensitivities(scenario, run_request, request.sensitivity, values))
+            result = replace(result, derivatives=sensitivities(scenario, run_request, request.sensitivity, values))
         except (Failure, KeyboardInterrupt) as error:  # what was integrated is written all the same
-            result = Motion(run, stopped=error)
+            result = replace(result, stopped=error)
     watch("drawing")
     return result
+
+
+T = TypeVar("T")
+
+
+class _Recalling:
+    """Plans and error estimates by what earlier commands measured; ``before``: whether any was there."""
+
+    def __init__(self, context: Asked, anew: bool) -> None:
+        self._context, self._anew, self.before = context, anew, False
+
+    def __call__(self, what: str, scenario: Scenario, request: Run, how: object, measure: Callable[[], T]) -> T:
+        if request.earlier is not None:
+            return measure()
+        asked = replace(request, store=None), how
+        found, before = self._context.measured(what, scenario, asked, measure, self._anew, _sound)
+        self.before |= before
+        return found
+
+
+def _sound(found: object) -> bool:
+    return not (isinstance(found, NoEstimate) and found.why is Lacking.INTERRUPTED)
 
 
 PLANNING = "choosing model, method and tolerance"

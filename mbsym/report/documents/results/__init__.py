@@ -162,11 +162,14 @@ class Routh(Part, frozen=True):
 class Hamilton(Part, frozen=True):
     """problem 3 in Hamilton's form, where it was asked for"""
 
-    momenta: Annotated[list[str], "the names of the momenta p, in the order of the coordinates"]
-    momenta_in_velocities: Annotated[list[Formula], "p = dL/dq'", BY_COORDINATE]
+    positions: Annotated[list[str], "coordinates, unit vectors and quaternions that are the state beside p"]
+    speeds: Annotated[list[str], "the independent velocities u, or speeds, that p belong to"]
+    momenta: Annotated[list[str], "the names of the momenta p, in the order of u"]
+    momenta_in_velocities: Annotated[list[Formula], "p = dL/du", BY_COORDINATE]
     hamiltonian: Annotated[Formula, "Hamilton's function H(q, p, t)"]
-    velocities: Annotated[list[Formula], "q' = dH/dp", BY_COORDINATE]
-    rates: Annotated[list[Formula], "p' = -dH/dq + Q", BY_COORDINATE]
+    velocities: Annotated[list[Formula], "q' = Y dH/dp + y0 of the positions; Y = 1 where u = q'", BY_COORDINATE]
+    rates: Annotated[list[Formula], "p', -dH/dq + Q where u = q'", BY_COORDINATE]
+    integrable: Annotated[bool | None, "whether the constraints on velocities are; null where that is undecided"]
 
 
 class Brackets(Part, frozen=True):

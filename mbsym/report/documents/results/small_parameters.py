@@ -7,7 +7,7 @@ from typing import Annotated
 from msgspec import UNSET, UnsetType
 
 from mbsym.report.documents.base import ASIDE, Part, told_apart_by
-from mbsym.report.documents.expansion import Measured, SlowManifold
+from mbsym.report.documents.expansion import AT_VALUES, Measured, SlowManifold
 from mbsym.report.documents.oscillations import Oscillation
 from mbsym.report.documents.parts import Formula
 
@@ -28,10 +28,7 @@ class Averaged(Part, frozen=True):
         Formula | UnsetType,
         "the effective potential energy, but for constants; loads without a force function act beside it",
     ] = UNSET
-    averaged_motion_at_values: Annotated[
-        str | UnsetType | None,
-        "verdict of problem 6 on the averaged motion at the given values; null where there is none",
-    ] = UNSET
+    averaged_motion_at_values: Annotated[str | UnsetType | None, AT_VALUES] = UNSET
     measured: Annotated[Measured | UnsetType, ASIDE] = UNSET
 
 
