@@ -20,11 +20,10 @@ from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.substitution import with_free_rates
-from mbsym.problems import dissipation, energy, equations, equilibrium, integrals, stability
+from mbsym.problems import dissipation, energy, equilibrium, integrals, stability
 from mbsym.problems.checks import EXACT, NUMERICAL
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
-from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.stability import Stability
@@ -48,17 +47,6 @@ if TYPE_CHECKING:
 def energy_of(analysis: Analysis) -> Energy:
     """T, U and their parts, in speeds where the system has some."""
     return energy.energy(analysis.scene, analysis.form if analysis.system.speeds else None)
-
-
-def equations_of(analysis: Analysis) -> Equations:
-    """The equations of motion: with constraints, in speeds, or Lagrange's."""
-    if analysis.system.constraints:
-        return constrained.equations_of(analysis)
-    if not analysis.system.speeds:
-        return equations.equations(analysis.scene, analysis.energy)
-    from mbsym.problems import in_speeds
-
-    return in_speeds.equations(analysis.form, analysis.scene)
 
 
 def stability_of(analysis: Analysis) -> Stability:
