@@ -25,6 +25,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -250,8 +251,8 @@ def _witnessed(
 ) -> ErrorEstimate:
     """The estimate, or that of a witness that contradicts it; ``costs``: what is allowed, and what the runs have cost.
 
-    A witness that is itself coarse comes closer to the run when it is made finer; one that stays as far away is
-    believed.  One that cannot be had for what is allowed, or that does not come to the end, says nothing.
+    A witness that is itself coarse comes closer to the run when it is made finer; one that stays where it is, as far
+    away, is believed.  One that cannot be had for what is allowed, or that does not come to the end, says nothing.
     """
     name = own[0].traits.name
     took_part = {name, *(change.method for change in trajectory.work.changes)}
@@ -279,6 +280,7 @@ def _testimony(
     scales = np.array([q.scale for q in estimate.quantities])
     most = min(limit - spent, max(LITTLE if limit < inf else ASKED, BESIDE * spent))
     setting, before = better.setting, inf
+    earlier: Any = None
     try:
         states = trial_of(method, dynamics, trajectory.setting, places, scalar).whole().states
         while True:
@@ -286,9 +288,11 @@ def _testimony(
             apart = float(np.max(np.max(np.abs(states - truth), axis=1) / scales))
             if apart <= CLEARLY * estimate.largest:
                 return estimate
-            if apart > before / CLEARLY:
+            if earlier is not None and apart > before / CLEARLY:
+                if CLEARLY * float(np.max(np.max(np.abs(truth - earlier), axis=1) / scales)) > apart:
+                    return None  # what it says hangs on its steps
                 break
-            setting, before = _finer(setting), apart
+            setting, before, earlier = _finer(setting), apart, truth
     except (Breakdown, Unusable):
         return None
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
