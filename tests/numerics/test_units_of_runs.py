@@ -145,8 +145,12 @@ def test_a_system_runs_alike_in_all_units(name: str, units: str) -> None:
 CHOOSING = ("bead-on-hoop", "spring-pendulum", "cartesian-pendulum", "chaplygin-sleigh", "clebsch", "henon-heiles")
 
 
-#: Their certificates take minutes; and a bicycle's 22 steps err by a fifth more or less as it is rounded.
-LONG, ROUNDED = {"gyrostat", "orbital-gyrostat"}, {"bicycle": 0.5}
+#: Left out, for their plans and certificates take a minute and more.
+LONG = {"gyrostat", "orbital-gyrostat", "rolling-disc-speeds", "rolling-sphere-speeds", "spatial-arm"}
+LONG |= {name for name in UNITS if name.startswith("satellite")}
+
+#: A bicycle's 22 steps err by a fifth more or less as it is rounded.
+ROUNDED = {"bicycle": 0.5}
 
 IN_UNITS = [(name, "mm-g-ms") for name in sorted(UNITS.keys() - LONG)] + [(name, "microns") for name in CHOOSING]
 
