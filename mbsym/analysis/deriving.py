@@ -143,8 +143,8 @@ def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     judgement = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     if judgement.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and Judge(analysis).may_add(judgement.verdict):
-        verdict = higher.of_one_coordinate(analysis, Judge(analysis).for_all(judgement.verdict))
-        judgement = stability.with_verdict(judgement, verdict)
+        verdict = higher.of_one_coordinate(analysis, judgement.verdict)
+        judgement = stability.with_verdict(judgement, Judge(analysis).for_all(verdict))
         if (
             judgement.verdict.word.open
             and not judgement.verdict.because(Because.ORDER_DECIDES)
@@ -158,8 +158,10 @@ def _judged(analysis: Analysis) -> Stability:
     if judgement.numerical is None or values is None:
         return judgement
     judge, judged = Judge(analysis), judgement.numerical
-    if judged.word.open and higher.decided(judgement.verdict.word) and judge.may_add(judged):
-        judged = judgement.verdict  # for all values, and so for these
+    general = judgement.verdict
+    weaker = general.because(Because.FEWER_CONSTRAINTS)  # than what rests near by may say
+    if judged.word.open and higher.decided(general.word) and judge.may_add(judged) and not weaker:
+        judged = general  # for all values, and so for these
     else:
         judged = judge.decided(judged, values)
     before = judgement.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None

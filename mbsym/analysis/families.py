@@ -9,9 +9,10 @@ Stability of Motion, section 34; H. Rubin, P. Ungar, Comm. Pure Appl. Math. 10 (
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import combinations
 from math import prod
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,7 @@ from mbsym.algebra.roots import counted
 from mbsym.analysis.higher import momenta_at_rest
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.motion import relations, turning, unperturbed_with
+from mbsym.mechanics.variables import ring_environment
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest
 from mbsym.problems.stability.linear_form import state_matrix
@@ -41,23 +43,50 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
 
 
-def by_energy_of_more(system: System, judged: Callable[[System], Verdict]) -> Verdict | None:
+def by_energy_of_more(
+    analysis: Analysis, judged: Callable[[System], tuple[Analysis, Verdict]], conserved: bool
+) -> Verdict | None:
     """The verdict on a rest by its energy where constraints on velocities are left out; None where there are none.
 
-    Rows J q' = 0 do no work: an energy that does not grow without them does not grow with them.  ``judged`` gives the
-    verdict on the same rest of another system.
+    Rows J q' = 0 do no work: an energy that does not grow without them does not grow with them.  What may drift without
+    them has to be free to do so with them, too, and not to be stopped: the energy is ``conserved``.  ``judged`` gives
+    the analysis of another system, and its verdict.
     """
+    system = analysis.system
     holonomic = tuple(filter(is_holonomic, system.constraints))
     if len(holonomic) == len(system.constraints):
         return None
-    verdict = judged(replace(system, constraints=holonomic, dependent=()))
+    there, verdict = judged(replace(system, constraints=holonomic, dependent=()))
     names = verdict.laid.get(Ground.ENERGY, (CHETAEV,))
-    if CHETAEV in names or (Flaw.CYCLIC in verdict.flawed and system.prescribed):  # constraints change momenta
+    if CHETAEV in names:
         return None
     reasons = Reason(Because.FEWER_CONSTRAINTS), Reason(Because.DRIFT)
-    if Flaw.CYCLIC in verdict.flawed:
-        return Verdict(Word.STABLE_BUT_CYCLIC, (LAGRANGE,), reasons)
-    return Verdict(Word.STABLE, (LAGRANGE,), reasons[:1])
+    if Flaw.CYCLIC not in verdict.flawed:
+        return Verdict(Word.STABLE, (LAGRANGE,), reasons[:1])
+    if system.prescribed or not conserved or not (Ground.IDLE in verdict.laid or _drifts(analysis, there)):
+        return None
+    return Verdict(Word.STABLE_BUT_CYCLIC, (LAGRANGE,), reasons)
+
+
+def _drifts(analysis: Analysis, there: Analysis) -> bool:
+    """Whether constraints allow one of the symmetric displacements D of a rest: rank(J D^T) < rank(D)."""
+    ring = there.ring
+    place = unperturbed_with(there.scene, relations(there.scene))
+    carry = Carrier(analysis.ring, ring, ring_environment(there.system, ring))
+
+    def at(x: Polynomial) -> Polynomial:
+        return ring.reduce(ring.substitute(x, place))
+
+    fields = [list(map(at, one)) for one in there.balance.symmetries(there.system.coordinates).directions]
+    rows = [[at(carry(x)) for x in row] for row in analysis.constraints.jacobian.polynomials]
+    held = [[ring.dot(row, one) for one in fields] for row in rows]
+
+    def deficient(table: Sequence[Sequence[Polynomial]]) -> bool | None:
+        chosen = combinations(table, len(fields))
+        zeros = [ring.is_zero(ring.reduce(determinant(ring, [list(row) for row in some]))) for some in chosen]
+        return None if None in zeros else all(zeros)
+
+    return bool(fields) and deficient(list(zip(*fields, strict=True))) is False and deficient(held) is True
 
 
 def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool) -> Verdict | None:
@@ -88,7 +117,7 @@ def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool)
             return concluded({Fact.LEFT_BUT_STEADY}) if left else None
         conserved = not system.constraints and analysis.balance.at(values).conserves
         across = n.rank() == 0 and _positive(k, len(rests.equations))
-        if conserved and across and not _gyroscopic(analysis) and _varies(analysis, rests):
+        if conserved and across and not _gyroscopic(analysis) and rests.varies(_change(analysis, rests)):
             facts = {Fact.MINIMUM_ACROSS_RESTS, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED}
             return concluded(facts, Reason(Because.ALONG_RESTS, (rests.dimension,)))
     except (Failure, *NOT_THERE):
@@ -96,26 +125,29 @@ def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool)
     return None
 
 
-def by_one_coordinate(analysis: Analysis, judged: Callable[[System], Verdict]) -> Verdict | None:
+def by_one_coordinate(
+    analysis: Analysis, values: Mapping[str, Any], judged: Callable[[System], Verdict]
+) -> Verdict | None:
     """Instability of one coordinate while the others rest, where that is a motion: their equations hold on it.
 
-    What nothing drives leaves evenly, where it is no cyclic coordinate.
+    What nothing drives leaves evenly; it does not move along a symmetry where tr(M^-1 K) varies with it.
     """
     system, ring, equations = analysis.system, analysis.ring, analysis.equations
     names = system.coordinates
     if len(names) < 2 or system.constraints or system.prescribed or system.speeds or not at_rest(analysis):
         return None
-    place = unperturbed_with(analysis.scene, relations(analysis.scene))
+    found = _Rests(ring, names, *_at_values(analysis, values))
     for i, name in enumerate(names):
-        others = [other for other in names if other != name]
-        still = {k: x for k, x in place.items() if ring.dependencies(ring.context.gen(k), others)}
-        still |= {ring.index("velocity", other): ring.zero for other in others}
+        still = found.plane([other for other in names if other != name])
         rows = [(*equations.mass_matrix.polynomials[j], equations.forcing[j].polynomial) for j in range(len(names))]
         hold = (x for j, row in enumerate(rows) if j != i for x in (row[i], row[-1]))
         if not all(ring.is_zero(ring.reduce(ring.substitute(x, still))) is True for x in hold):
             continue
         verdict = judged(beside_rest(system, [name]))
-        if Ground.IDLE in verdict.laid and name not in analysis.balance.ignorable:
+        if Ground.IDLE in verdict.laid:
+            change = ring.reduce(ring.substitute(_change(analysis, found), still))
+            if ring.is_zero(change) is not False:
+                continue
             verdict = concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
         if verdict.word is Word.UNSTABLE:
             return replace(verdict, reasons=(*verdict.reasons, Reason(Because.WHILE_OTHERS_REST, (name,))))
@@ -177,6 +209,12 @@ class _Rests:
         factors = irreducible_factors(x)[1] if x else [(x, 1)]
         return prod((factor**exponent for factor, exponent in factors if not self.at(factor)), start=self.ring.one)
 
+    def plane(self, fixed: Collection[str]) -> dict[int, Polynomial]:
+        """The states at which these coordinates are what they are at the rest, and do not move."""
+        ring, gens = self.ring, self.ring.context.gens()
+        place = {k: x for k, x in self.place.items() if k in self.numbers or ring.dependencies(gens[k], fixed)}
+        return place | {ring.index("velocity", name): ring.zero for name in fixed}
+
     def varies(self, x: Polynomial) -> bool:
         """Whether x, which is 0 at the rest, is proved not to be 0 at all rests near by.
 
@@ -184,14 +222,25 @@ class _Rests:
         """
         ring = self.ring
         reduced, rank = fmpq_mat(self.slopes).rref()
-        fixed = {self.names[next(j for j in range(len(self.names)) if reduced[r, j] != 0)] for r in range(rank)}
-        others = [name for name in self.names if name not in fixed]
-        gens = ring.context.gens()
-        plane = {k: y for k, y in self.place.items() if k in self.numbers or not ring.dependencies(gens[k], others)}
+        pivots = [next(j for j in range(len(self.names)) if reduced[r, j] != 0) for r in range(rank)]
+        plane = self.plane([self.names[j] for j in pivots])
         if all(ring.vanishes(ring.substitute(equation, plane)) for equation in self.equations):
             return ring.is_zero(ring.reduce(ring.substitute(x, plane))) is False
         plain = {ring.generators[k].kind for k in occurring([x, *self.equations])} <= {"coordinate"}
         return plain and rank == 1 and divmod(x, self.equations[0])[1] != 0
+
+
+def _at_values(
+    analysis: Analysis, values: Mapping[str, Any]
+) -> tuple[Mapping[int, Polynomial], Mapping[int, Polynomial]]:
+    """What parameters, and then coordinates, are at the rest."""
+    ring = analysis.ring
+    numbers = {
+        ring.index("parameter", name): ring.number(x)
+        for name, x in values.items()
+        if isinstance(x, Fraction) and ring.has("parameter", name)
+    }
+    return numbers, unperturbed_with(analysis.scene, relations(analysis.scene) | numbers)
 
 
 def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
@@ -209,17 +258,12 @@ def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
         if equations.embedded is None:
             return None
         forces = equations.embedded.forcing
-    numbers = {
-        ring.index("parameter", name): ring.number(x)
-        for name, x in values.items()
-        if isinstance(x, Fraction) and ring.has("parameter", name)
-    }
-    place = unperturbed_with(analysis.scene, relations(analysis.scene) | numbers)
+    numbers, place = _at_values(analysis, values)
     found = _Rests(ring, system.coordinates, numbers, place)
     still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
     parts = []
     for force in forces:
-        top, below = ring.fraction(ring.reduce(ring.substitute(force.polynomial, still | numbers)))
+        top, below = ring.fraction(ring.reduce(ring.substitute(force.polynomial, still | dict(numbers))))
         if not all(found.at(factor) for factor, _ in below):
             return None
         parts.append(found.vanishing_part(top))
@@ -231,8 +275,8 @@ def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
     return found
 
 
-def _varies(analysis: Analysis, rests: _Rests) -> bool:
-    """Whether tr(M^-1 K) is not the same at all rests near by, as it would be were they alike."""
+def _change(analysis: Analysis, rests: _Rests) -> Polynomial:
+    """What vanishes where tr(M^-1 K) is what it is at the rest, as it is at all rests that are alike."""
     ring, names, numbers = rests.ring, rests.names, dict(rests.numbers)
     mass = [[ring.substitute(x, numbers) for x in row] for row in analysis.equations.mass_matrix.polynomials]
     still = numbers | {ring.index("velocity", name): ring.zero for name in names}
@@ -244,7 +288,9 @@ def _varies(analysis: Analysis, rests: _Rests) -> bool:
         replaced = [[*row[:k], x, *row[k + 1 :]] for row, x in zip(mass, column, strict=True)]
         trace = ring.reduce(trace + determinant(ring, replaced))
     top, below = ring.fraction(ring.reduce(trace * rests.at(whole) - whole * rests.at(trace)))
-    return all(rests.at(factor) for factor, _ in below) and rests.varies(top)
+    if not all(rests.at(factor) for factor, _ in below):
+        raise NotRational("a derivative has no exact value")
+    return top
 
 
 def _positive(k: fmpq_mat, rank: int) -> bool:

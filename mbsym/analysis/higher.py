@@ -18,11 +18,12 @@ from mbsym.analysis.approximation import kept_by_velocities
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import names
+from mbsym.expressions.tree import ZERO, names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
+from mbsym.model.substitution import on_one_side
 from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting
@@ -184,6 +185,10 @@ class FirstTerm:
             extremum = Extremum.NONE if sign in ("positive", "negative", "nonzero") else Extremum.OPEN
         else:
             extremum = {"positive": Extremum.MINIMUM, "negative": Extremum.NONE}.get(sign, Extremum.OPEN)
+        return self.by(extremum)
+
+    def by(self, extremum: Extremum) -> Verdict | None:
+        """The verdict by what V has there."""
         if not self.damped or extremum is Extremum.OPEN:
             return by_extremum(self.order, extremum, self.conserved)
         decaying = Word.STABLE if self.leaf else Word.ASYMPTOTIC
@@ -232,6 +237,8 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str,
         return knowledge.signs(scene).sign(x)  # told anew: expansions bring numbers with them, as exp(1)
 
     sign = for_all if values is None else _sign_at(scene.ring, values)
+    if scene.ring.kinked:
+        return _of_two_sides(analysis, values) or verdict
     term = next(first_terms(analysis, balance if values is None else balance.at(values), sign), None)
     if term is None:
         return verdict
@@ -245,6 +252,33 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str,
     positive = Formula(scene.ring, condition.polynomial)
     reasons = (reason for reason in verdict.reasons if reason.code is not Because.HIGHER_ORDER)
     return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (term.order, positive, staying.word))))
+
+
+def _of_two_sides(analysis: Analysis, values: Mapping[str, Any] | None) -> Verdict | None:
+    """Of one coordinate x at rest at 0, of which forces know |x| or sign(x): by the first term of V on either side.
+
+    V rises where it is c x^n with c > 0 for x > 0, or c (-1)^n > 0 for x < 0.
+    """
+    system = analysis.system
+    if len(system.coordinates) != 1 or system.constraints or any(entry.value != ZERO for entry in system.motion):
+        return None
+    (name,) = system.coordinates
+    terms, rises = [], []
+    for side in (1, -1):
+        there = type(analysis)(on_one_side(system, name, side), (), analysis.terms, suggests=False)
+        scene = there.parameters_scene
+        sign = knowledge.signs(scene).sign if values is None else _sign_at(scene.ring, values)
+        balance = there.balance if values is None else there.balance.at(values)
+        term = None if scene.ring.kinked else next(first_terms(there, balance, sign), None)
+        word = "unknown" if term is None else sign(term.coefficient)
+        if term is None or word not in ("positive", "negative"):
+            return None
+        terms.append(term)
+        rises.append((word == "positive") is (side > 0 or term.order % 2 == 0))
+    first = max(terms, key=lambda term: term.order)
+    if len({(term.damped, term.conserved) for term in terms}) > 1:
+        return None
+    return first.by(Extremum.MINIMUM if all(rises) else Extremum.NONE)
 
 
 def _sign_at(ring: Ring, values: Mapping[str, Any]) -> Callable[[Polynomial], str]:

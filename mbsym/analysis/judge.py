@@ -150,7 +150,7 @@ class Judge:
         """Instability by slow motions along rests near by, or by those of one coordinate."""
         along = families.by_rests_near(self.analysis, values, decaying=False)
         try:
-            return along or families.by_one_coordinate(self.analysis, lambda x: self._of(x)(values))
+            return along or families.by_one_coordinate(self.analysis, values, lambda x: self._of(x)(values))
         except (Failure, *NOT_THERE):
             return None
 
@@ -169,7 +169,9 @@ class Judge:
         try:
             balance = of.balance if values is None else of.balance.at(values)
             if families.at_rest(of) and balance.law.bounded:
-                return families.by_energy_of_more(of.system, lambda x: judged(self._of(x)))
+                return families.by_energy_of_more(
+                    of, lambda x: (self._of(x).analysis, judged(self._of(x))), balance.conserves
+                )
         except (Failure, *NOT_THERE):  # without these constraints there may be no such rest
             return None
         return None

@@ -221,6 +221,32 @@ def told_by(system: System, name: str, value: Expression) -> System:
     return _told_by(_motions_alone(system), name, value, [x for x in system.coordinates if x != name])
 
 
+def on_one_side(system: System, name: str, side: int) -> System:
+    """The system where a coordinate has one sign, +1 or -1: abs and sign of it and of its multiples put in."""
+
+    def one_sided(expression: Expression, images: Mapping[str, Expression]) -> Expression:
+        match expression:
+            case Negative(operand):
+                return negative(one_sided(operand, images))
+            case Operation(operator, left, right):
+                return Operation(operator, one_sided(left, images), one_sided(right, images))
+            case Call("abs" | "sign" as function, argument) if (slope := _multiple(argument, name)) is not None:
+                turn = number(Fraction(side if slope > 0 else -side))
+                return multiply(turn, argument) if function == "abs" else turn
+            case Call():
+                return replace(expression, argument=one_sided(expression.argument, images))
+        return expression
+
+    return put(_motions_alone(system), {name: Name(name)}, one_sided)
+
+
+def _multiple(expression: Expression, name: str) -> Fraction | None:
+    """c of c name, a number other than 0; None of others."""
+    slope = folded(differentiate(expression, name), {name: ZERO})
+    linear = is_number(folded(expression, {name: ZERO}), 0) and not names(differentiate(expression, name))
+    return slope.value if linear and isinstance(slope, Number) and slope.value else None
+
+
 def beside_rest(system: System, names: Sequence[str]) -> System:
     """The motions of the coordinates ``names`` alone, while the others rest where they begin."""
     system = _motions_alone(system)

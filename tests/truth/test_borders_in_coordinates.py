@@ -255,8 +255,10 @@ def test_two_coordinates_left(load: str, c: str, wanted: Word | None) -> None:
         ("x**4 + y**4 - 2*x**2*y**2", None),
         ("x**3 + y**3", Word.UNSTABLE),
         ("x**6 + y**6", Word.STABLE),
-        ("-x**4 - y**4\n  - generalized force: {x: 5*x*y_dot, y: -5*x*x_dot}", None),
-        ("-x**4 - y**4\n  - generalized force: {x: x_dot*y_dot, y: -x_dot**2}", None),
+        ("-x**4 - y**4\n  - generalized force: {x: 5*(x + y)*y_dot, y: -5*(x + y)*x_dot}", None),
+        # x = 0 and y'' = 4 y^3 is a motion
+        ("-x**4 - y**4\n  - generalized force: {x: 5*x*y_dot, y: -5*x*x_dot}", Word.UNSTABLE),
+        ("-x**4 - y**4\n  - generalized force: {x: x_dot*y_dot, y: -x_dot**2}", Word.UNSTABLE),
     ],
 )
 def test_forms_in_two_coordinates(potential: str, wanted: Word | None) -> None:

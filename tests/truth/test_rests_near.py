@@ -82,6 +82,22 @@ def test_what_is_said_of_a_skate_for_all_parameters(potential: str, wanted: Word
     assert found.numerical is None or found.numerical.word is wanted
 
 
+def test_values_say_more_than_what_holds_for_all_parameters() -> None:
+    text = SKATE.replace("V,", f"{HELD},").replace("Y", "0").replace("D}", "1}")
+    text = text.replace("k: real, c: real, d: real", "k: positive, c: positive, d: nonnegative")
+    found = mbsym.loads(text, (4, 5, 6)).stability
+    assert found.numerical is not None
+    assert (found.verdict.word, found.numerical.word) == (Word.STABLE, Word.ASYMPTOTIC_BUT_STEADY)
+
+
+@pytest.mark.parametrize("more", ["", ", velocity: th_dot = 0", ", velocity: th_dot = x_dot"])
+def test_what_constraints_hold_does_not_drift(more: str) -> None:
+    """Without them th drifts in the well; th' = 0 holds it, and so does th' = x', for th moves with x then."""
+    text = SKATE.replace("V,", f"{WELL},").replace("Y", "0").replace("D}", "0}")
+    found = word(text.replace("cos(th) = 0]", f"cos(th) = 0{more}]"))
+    assert found is Word.STABLE_BUT_CYCLIC if not more else found in (Word.STABLE, Word.CRITICAL, Word.UNDECIDED)
+
+
 VALLEY = """
 mbsym: 1
 name: valley
@@ -226,3 +242,20 @@ def test_one_coordinate_moves_while_the_other_rests(potential: str, force: str, 
     text = VALLEY.replace("POINT", "x, y").replace("V,", f"{potential},").replace("FORCE", force).replace("X", "0")
     found = word(text)
     assert found.open if wanted is None else found is wanted
+
+
+@pytest.mark.parametrize(
+    ("loads", "wanted"),
+    [
+        ("potential: abs(x)**3", Word.STABLE),
+        ("potential: 2*abs(3*x)**3 - x**3", Word.STABLE),  # 53 x^3 and 55 |x|^3
+        ("potential: abs(x)**3/2 - x**3", Word.UNSTABLE),  # -x^3/2 for x > 0
+        ("potential: x**4 - abs(x)**3", Word.UNSTABLE),
+        ("potential: x**3 + abs(x)**3", Word.UNDECIDED),  # every x < 0 is a rest
+        ("potential: abs(x)**3, damper: {coordinate: x, coefficient: 1}", Word.ASYMPTOTIC),
+        ("potential: abs(x)**3, generalized force: {x: abs(x)*x_dot}", Word.UNDECIDED),
+    ],
+)
+def test_a_potential_with_another_first_term_on_either_side(loads: str, wanted: Word) -> None:
+    text = "mbsym: 1\nname: kink\nbodies:\n  - {name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}\n"
+    assert word(f"{text}loads: [{loads}]\nmotion: {{x: 0}}\n") is wanted

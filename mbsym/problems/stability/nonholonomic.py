@@ -1,4 +1,4 @@
-"""Verdicts on steady motions of nonholonomic systems: by their roots, and by nothing else.
+"""Verdicts on steady motions of nonholonomic systems by their roots; of rests ``analysis.families`` may say more.
 
 The first approximation has no Hamiltonian structure: where no force does work its roots need not be symmetric about
 the imaginary axis (a bicycle, a sleigh), K > 0 proves nothing, and gyroscopic stabilisation has no meaning.  What holds

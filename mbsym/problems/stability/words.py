@@ -241,9 +241,9 @@ class Reason:
 #   D = N = 0 and det K < 0: unstable, whatever G is.
 # * Lyapunov's first method: all roots to the left, or one to the right.
 # * Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.  Of nonholonomic
-#   systems it is, with Lyapunov's first method, all there is: their first approximation has no Hamiltonian structure,
-#   and the theorems on energy and on gyroscopic stabilisation are not about them (Neimark & Fufaev, chapter V;
-#   Karapetyan).
+#   systems it is, with Lyapunov's first method, all there is of the first approximation: that has no Hamiltonian
+#   structure, and the theorems on gyroscopic stabilisation are not about them (Neimark & Fufaev, chapter V;
+#   Karapetyan).  Rests are stable, too, by an energy that has a minimum without the constraints on velocities.
 # * Routh, by Chaplygin's integrals: of a nonholonomic system with one position q beside velocities w, w' = q' A(q, w)
 #   and q'' = F(q, q'^2, w), w is a function of q along every motion, and what is left, q'' = f(q, q'^2), is reversed
 #   with the time: a centre where q rests and its roots are imaginary (bodies of revolution that roll on a plane).
