@@ -191,6 +191,16 @@ def test_rest_that_rows_hold_is_no_coarse_run(tmp_path: Path) -> None:
     assert run.conservation.change < 1e-12
 
 
+@pytest.mark.parametrize(
+    ("relation", "everywhere"), [("sqrt(3)*x + y*(1 + x**2)", True), ("x + y**3", True), ("x*y - 1", False)]
+)
+def test_what_never_vanishes_is_no_condition(relation: str, everywhere: bool) -> None:
+    """1 + x^2 and 1, by which y' and x' are solved for; x y = 1 is solved for where x is not 0."""
+    solved = analysed(SQUARE % relation).constraints.solved
+    assert solved is not None
+    assert solved.regular_everywhere == everywhere
+
+
 def test_products_of_numbers_are_multiplied_out(tmp_path: Path) -> None:
     """``2*1000`` was written as ``2 1000``."""
     text = SQUARE % "x - 2*1000*y" + "motion: {x: 2*1000, y: 1}\n"

@@ -272,7 +272,7 @@ class _Analysis:
             ),
             exact_points=points.exact,
             pivots=pivots,
-            solved=None if embedding is None else Solved.of(self.ring, embedding),
+            solved=None if embedding is None else Solved.of(self.scene, embedding),
             dependent_sets=self._dependent_sets(independent, m, points),
             dependent_positions=self._dependent_sets(
                 [i for i in independent if self.rows[i].name.holonomic],
@@ -496,7 +496,7 @@ def constraints_in_speeds(
         coordinates=names,
         dependent=tuple(names[k] for k in pivots.columns),
         pivots=pivots,
-        solved=None if embedding is None else Solved.of(ring, embedding),
+        solved=None if embedding is None else Solved.of(scene, embedding),
         in_speeds=True,
     )
 
