@@ -219,8 +219,7 @@ class _Analysis:
     def _chosen(self, jacobian: Sequence[Sequence[Polynomial]], independent: list[int], points: _Points) -> Pivots:
         columns, required = self._columns(len(independent))
         try:
-            regular = regular_at(points.jacobians())
-            return choose(self.ring, jacobian, independent, columns, regular, required, places(self.scene))
+            return choose(self.ring, jacobian, independent, columns, regular_at(points.jacobians()), required)
         except Constrained as reason:
             if not self.system.dependent:
                 raise
