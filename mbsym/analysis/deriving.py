@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.failures import NOT_THERE, Failure, SingularPoint
 from mbsym.algebra.matrices import determinant
 from mbsym.analysis import approximation, constrained, given, higher
 from mbsym.analysis.judge import Judge
@@ -235,10 +236,10 @@ def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
     position = oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded)
     rests = bool(position) and ring.reduce(at[ring.index("velocity", position)]).is_zero()
-    return {
-        "oscillating": position if rests else "",
-        "steady": steady_motions(ring, embedded, names, about.idle, at, analysis.signs),
-    }
+    steady = None
+    with suppress(SingularPoint):  # independent velocities may be singular on the motion
+        steady = steady_motions(ring, embedded, names, about.idle, at, analysis.signs)
+    return {"oscillating": position if rests else "", "steady": steady}
 
 
 #: So many choices of independent velocities are tried.
