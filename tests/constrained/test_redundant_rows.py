@@ -438,9 +438,8 @@ def by_all_rows(dynamics: Dynamics, source: Any) -> Iterator[tuple[Any, Any]]:
     constraints = dynamics.constraints
     assert constraints is not None
     n = constraints.size
-    start = np.array([float(x) for x in dynamics.scenario.state])
     kernels = [arrays.kernel(code) for code in (dynamics.mass_matrix, dynamics.forcing)]
-    for place in constraints._places(start):
+    for place in constraints.near:
         state = place.copy()
         state[n:] = source.normal(size=n)
         here = constraints.at(0.0, state)
@@ -643,8 +642,7 @@ def test_regular_positions_are_held_no_further(name: str) -> None:
     constraints = Dynamics(begun(case(name))).constraints
     assert constraints is not None
     assert len(constraints.kept) < len(constraints)
-    start = np.array([float(x) for x in constraints._scenario.state])
-    assert not any(constraints.obstructed(place) for place in constraints._places(start))
+    assert not any(constraints.obstructed(place) for place in constraints.near)
 
 
 def test_runs_of_regular_positions_end_whole() -> None:
