@@ -231,9 +231,9 @@ Formulas in a description
     functions     {functions}
     in loads      {kinked}
     tables        {tabulated}
-    velocities    x_dot or x' of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
-    speeds        the names under 'speeds': where velocities may stand in loads; components of unit vectors in a force,
-                  a torque, a potential
+    velocities    x_dot or x' of a coordinate x: in forces, torques, dissipation functions, velocity constraints, claims
+    speeds        the names under 'speeds': where velocities may stand; components of unit vectors in forces, torques,
+                  potentials, constraints
     accelerations x_ddot or x'': in claims of equations of motion and of values
     time          t: in loads and claims
 
