@@ -235,7 +235,7 @@ Formulas in a description
     speeds        the names under 'speeds': where velocities may stand; components of unit vectors in forces, torques,
                   potentials, constraints
     accelerations x_ddot or x'': in claims of equations of motion and of values
-    time          t: in loads and claims
+    time          t: in joints, loads, constraints and claims
 
 Angles are in radians (30 degrees are pi/6); any number may be an angle, and fractions of pi and decimals stay exact:
 sin(pi/12) is made of roots, sin(pi/7) and sin(0.7853) are constants of their own.  All numbers belong to one
