@@ -9,6 +9,8 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable, Sequence
+from fractions import Fraction
+from random import Random
 from typing import Any
 from zlib import crc32
 
@@ -333,6 +335,148 @@ def resting(draw: Draw) -> Description:
     description["loads"] = [load for load in description["loads"] if "*t" not in json.dumps(load)]
     description["motion"] = {name: draw(st.sampled_from([0, 0, "pi/2", "alpha"])) for name in coordinates(description)}
     return description
+
+
+# --- mechanisms whose rows follow from others, as texts ---
+
+
+def closed_tree(source: Random) -> str:
+    """A tree of hinges and slides whose bodies are held together at points that coincide where all coordinates are 0.
+
+    Some bodies have no mass; some are held at two points, some twice at one: these rows follow from others.
+    """
+    planar, count = source.random() < 0.5, source.randint(3, 6)
+
+    def vector() -> list[Fraction]:
+        found = [Fraction(source.choice(["0", "1", "-1", "1/2", "2"])) for _ in range(3)]
+        return [*found[:2], Fraction(0)] if planar else found
+
+    def listed(values: Any) -> str:
+        return "[" + ", ".join(map(str, values)) + "]"
+
+    places, bodies = [[Fraction(0)] * 3], []
+    for i in range(1, count + 1):
+        parent, arm = source.randint(0, i - 1), vector()
+        places.append([a + b for a, b in zip(places[parent], arm, strict=True)])
+        axis = 3 if planar else source.choice([1, 2, 3])
+        joint = f"connection point: {listed(arm)}, rotation: {{axes: [{axis}], angles: [q{i}]}}"
+        if source.random() < 0.15:
+            joint = f"connection point: {listed([f'{arm[0]} + q{i}', *arm[1:]])}, coordinates: [q{i}]"
+        mass = "mass: 1, mass centre: " + listed(vector()) + ", inertia about: mass centre, inertia: [1/5, 1/4, 1/3]"
+        mass = "mass: 0" if source.random() < 0.2 else mass
+        bodies.append(f"{{name: b{i}, attached to: {f'b{parent}' if parent else 0}, {joint}, {mass}}}")
+    rows: list[str] = []
+    for _ in range(source.randint(1, 3)):
+        pair, point = source.sample(range(count + 1), 2), [2 * x for x in vector()]
+        for _ in range(source.choice([1, 1, 2])):
+            arms = {k: listed(a - b for a, b in zip(point, places[k], strict=True)) for k in pair}
+            ends = (f"{{body: {f'b{k}' if k else 0}, point: {arm}}}" for k, arm in arms.items())
+            rows.append(f"coincide: [{', '.join(ends)}]")
+            point = [a + b for a, b in zip(point, vector(), strict=True)]
+    rows += rows[:1] if source.random() < 0.3 else []
+    return described(bodies, rows, [f"q{i}: 0" for i in range(1, count + 1)])
+
+
+def axle(source: Random) -> str:
+    """Wheels on one axle, at any yaw or one where the rows of a fixed choice are dependent; some carry a pendulum."""
+    count, hanging, yaw = (
+        source.randint(1, 4),
+        source.random() < 0.5,
+        source.choice(["0", "pi/2", "-pi/2", "pi", "1/3"]),
+    )
+    places = source.sample(["0", "1/2", "-1/2", "1", "-3/2"], count)
+    radii = [source.choice(["1/4", "1/4", "1/3"]) for _ in places]
+    bodies = [
+        f"{{name: car, attached to: 0, connection point: [x, y, 0], rotation: {{axes: [3], angles: [h]}}, coordinates: "
+        f"[x, y, h], mass: 2, mass centre: [{source.choice(['0', '1/5', '-1/3'])}, 0, 0], inertia about: mass centre, "
+        "inertia: [1, 1, 1]}"
+    ]
+    rows = []
+    for i, (place, r) in enumerate(zip(places, radii, strict=True)):
+        bodies.append(
+            f"{{name: w{i}, attached to: car, connection point: [0, {place}, 0], rotation: {{axes: [2], angles: "
+            f"[p{i}]}}, mass: 1, mass centre: [{source.choice(['0', '1/9'])}, 0, 0], inertia about: mass centre, "
+            "inertia: [1, 2, 1]}"
+        )
+        rows.append(f"rolling: {{body: w{i}, point: [0, 0, -{r}], axes: car, on: ground}}")
+        if source.random() < 0.3:
+            rows.append(f"velocity: {source.choice([1, 1000])}*(x_dot*sin(h) - y_dot*cos(h)) = 0")
+    if hanging:
+        bodies.append(
+            f"{{name: pendulum, attached to: car, rotation: {{axes: [{source.choice([1, 2])}], angles: [b]}}, mass: 1, "
+            "mass centre: [0, 0, 1/2], inertia about: mass centre, inertia: [1/4, 1/4, 1/4]}"
+        )
+    start = ["x: 0", "y: 0", f"h: {yaw}", *(f"p{i}: {source.choice(['0', '2'])}" for i in range(count))]
+    return described(bodies, rows, [*start, *["b: 1/2"] * hanging])
+
+
+def ball(source: Random) -> str:
+    """A ball that rolls on a plane, in a bowl, on a sphere, in a cylinder; its centre may be tied a second time."""
+    surface, axes = source.choice(["plane", "bowl", "sphere", "cylinder"]), source.choice(["3, 1, 3", "1, 2, 3"])
+    round_ = (
+        f"rotation: {{axes: [{axes}], angles: [u, v, w]}}, mass: 1, mass centre: [{source.choice(['0', '1/9'])}, 0, 0]"
+    )
+    round_ += ", inertia about: mass centre, inertia: [1/5, 1/4, 1/3]"
+    centre = "{{name: c, attached to: 0, connection point: {}, coordinates: [x, y, z], mass: 0}}".format("[x, y, z]")
+    far, start = {"bowl": "3", "sphere": "5", "cylinder": "3"}.get(surface, "1"), ["u: 1", "v: 1/2", "w: 2"]
+    if surface == "plane":
+        bodies = [centre, f"{{name: ball, attached to: c, {round_}}}"]
+        rows = ["rolling: {body: ball, point: [0, 0, -1], axes: c, on: ground}", "relation: z = 1"]
+        return described(bodies, rows + rows[1:] * source.randint(0, 1), ["x: 0", "y: 0", "z: 1", *start])
+    second = "" if surface == "cylinder" else ", 2"
+    arm = f"rotation: {{axes: [1{second}], angles: [a{', b' if second else ''}]}}, mass: 0"
+    arm += "" if second else ", connection point: [s, 0, 0], coordinates: [s, a]"
+    own = ["a: 1/3", "b: 1/4" if second else "s: 0"]
+    contact = "1" if surface == "sphere" else "-1"
+    bodies = [
+        f"{{name: arm, attached to: 0, {arm}}}",
+        f"{{name: ball, attached to: arm, connection point: [0, 0, -{far}], {round_}}}",
+    ]
+    rows = [f"rolling: {{body: ball, point: [0, 0, {contact}], axes: arm, on: ground}}"]
+    return described(bodies, rows * source.randint(1, 2), [*own, *start])
+
+
+def coupled(source: Random, form: str = "", angle: Fraction | None = None) -> str:
+    """Wheels of a locomotive with rods on both sides, a quarter of a turn apart: one may be in line with its pins."""
+    count, form = source.randint(2, 3), form or source.choice(["distance", "relation"])
+    bodies = ["{name: engine, attached to: 0, connection point: [x, 1, 0], coordinates: [x], mass: 3}"]
+    for i in range(count):
+        bodies.append(
+            f"{{name: w{i}, attached to: engine, connection point: [{3 * i}, 0, 0], rotation: {{axes: [3], angles: "
+            f"[-p{i}]}}, mass: 1, mass centre: [{source.choice(['1/3', '-1/4'])}, 0, 0], inertia about: mass centre, "
+            "inertia: [1, 1, 1]}"
+        )
+    rows = ["relation: x = p0"]
+    for i in range(1, count):
+        for a, b in (("1/2", 0), (0, "1/2")):
+            pins = [f"{{body: w{k}, point: [{a}, {b}, 0]}}" for k in (i - 1, i)]
+            apart = [f"({a})*({f}(p{i}) - {f}(p{i - 1})) + ({b})*({g}(p{i}) - {g}(p{i - 1}))*{sign}"
+                     for f, g, sign in (("cos", "sin", 1), ("sin", "cos", -1))]  # fmt: skip
+            scale = source.choice([1, 1, 1000])
+            rows.append(
+                f"distance: {{between: [{pins[0]}, {pins[1]}], length: 3}}"
+                if form == "distance"
+                else f"relation: {scale}*((3 + {apart[0]})**2 + ({apart[1]})**2) = {scale}*9"
+            )
+    at = source.choice(["0", "pi/2", "pi", "1"]) if angle is None else angle
+    return described(bodies, rows, [f"{name}: {at}" for name in ("x", *(f"p{i}" for i in range(count)))])
+
+
+def described(bodies: Sequence[str], rows: Sequence[str], start: Sequence[str]) -> str:
+    lines = ["mbsym: 1", "name: random", "bodies:", *(f"  - {x}" for x in bodies)]
+    lines += ["loads: [{uniform gravity: {vector: [1, -9, 2]}}]", "constraints:", *(f"  - {x}" for x in rows)]
+    return "\n".join([*lines, f"initial: {{{', '.join(start)}}}", ""])
+
+
+MECHANISMS = {kind.__name__: kind for kind in (closed_tree, axle, ball, coupled)}
+
+
+def mechanism(kind: str, seed: int) -> str:
+    """One of each kind by its seed."""
+    return MECHANISMS[kind](Random(f"{kind} {seed}"))
+
+
+mechanisms = st.builds(mechanism, st.sampled_from([*MECHANISMS]), st.integers(0, 9999))
 
 
 # --- the same numbers in two descriptions ---

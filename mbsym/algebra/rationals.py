@@ -44,3 +44,11 @@ def rounded(x: float, digits: int) -> fmpq:
         return fmpq(0)
     scale = Fraction(10) ** (digits - 1 - math.floor(math.log10(abs(x))))
     return exact(Fraction(round(Fraction(x) * scale)) / scale)
+
+
+def square_root(x: fmpq) -> fmpq | None:
+    """The root that is not negative, if that is rational."""
+    if x < 0:
+        return None
+    top, bottom = x.p.isqrt(), x.q.isqrt()
+    return fmpq(top, bottom) if top * top == x.p and bottom * bottom == x.q else None

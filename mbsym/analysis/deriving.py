@@ -155,7 +155,8 @@ def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     judgement = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     if judgement.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and Judge(analysis).may_add(judgement.verdict):
-        judgement = stability.with_verdict(judgement, higher.of_one_coordinate(analysis, judgement.verdict))
+        verdict = higher.of_one_coordinate(analysis, Judge(analysis).for_all(judgement.verdict))
+        judgement = stability.with_verdict(judgement, verdict)
         if (
             judgement.verdict.word.open
             and not judgement.verdict.because(Because.ORDER_DECIDES)

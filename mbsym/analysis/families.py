@@ -28,6 +28,7 @@ from mbsym.analysis.higher import momenta_at_rest
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.motion import relations, turning, unperturbed_with
 from mbsym.model.constraints import is_holonomic
+from mbsym.model.substitution import beside_rest
 from mbsym.problems.stability.linear_form import state_matrix
 from mbsym.problems.stability.verdict import Flaw, Verdict, concluded
 from mbsym.problems.stability.words import CHETAEV, LAGRANGE, Because, Fact, Ground, Reason, Word
@@ -92,6 +93,32 @@ def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool)
             return concluded(facts, Reason(Because.ALONG_RESTS, (rests.dimension,)))
     except (Failure, *NOT_THERE):
         return None
+    return None
+
+
+def by_one_coordinate(analysis: Analysis, judged: Callable[[System], Verdict]) -> Verdict | None:
+    """Instability of one coordinate while the others rest, where that is a motion: their equations hold on it.
+
+    What nothing drives leaves evenly, where it is no cyclic coordinate.
+    """
+    system, ring, equations = analysis.system, analysis.ring, analysis.equations
+    names = system.coordinates
+    if len(names) < 2 or system.constraints or system.prescribed or system.speeds or not at_rest(analysis):
+        return None
+    place = unperturbed_with(analysis.scene, relations(analysis.scene))
+    for i, name in enumerate(names):
+        others = [other for other in names if other != name]
+        still = {k: x for k, x in place.items() if ring.dependencies(ring.context.gen(k), others)}
+        still |= {ring.index("velocity", other): ring.zero for other in others}
+        rows = [(*equations.mass_matrix.polynomials[j], equations.forcing[j].polynomial) for j in range(len(names))]
+        hold = (x for j, row in enumerate(rows) if j != i for x in (row[i], row[-1]))
+        if not all(ring.is_zero(ring.reduce(ring.substitute(x, still))) is True for x in hold):
+            continue
+        verdict = judged(beside_rest(system, [name]))
+        if Ground.IDLE in verdict.laid and name not in analysis.balance.ignorable:
+            verdict = concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
+        if verdict.word is Word.UNSTABLE:
+            return replace(verdict, reasons=(*verdict.reasons, Reason(Because.WHILE_OTHERS_REST, (name,))))
     return None
 
 
@@ -169,10 +196,17 @@ class _Rests:
 
 def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
     """The manifold of rests; None where it is not shown that there is one."""
+    if analysis.system.constraints:
+        about = analysis.reduced.about
+        if analysis.constraints.position_rank or about.following:
+            return None
+        if {*about.dependent_speeds} != {*analysis.constraints.dependent}:  # others need not be regular here
+            there = replace(analysis.system, dependent=about.dependent_speeds)
+            analysis = type(analysis)(there, (), analysis.terms, suggests=False)
     ring, system, equations = analysis.ring, analysis.system, analysis.equations
     forces = equations.forcing
     if system.constraints:
-        if equations.embedded is None or analysis.constraints.position_rank or analysis.reduced.about.following:
+        if equations.embedded is None:
             return None
         forces = equations.embedded.forcing
     numbers = {

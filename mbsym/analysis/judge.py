@@ -19,7 +19,7 @@ asymptotic.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache, cached_property
@@ -147,24 +147,35 @@ class Judge:
         return replace(apart, reasons=tuple(sorted({*alike[0][1].reasons, about}, key=lambda reason: reason.rank)))
 
     def _along_rests(self, values: Mapping[str, Any]) -> Verdict | None:
-        """Instability by slow motions along rests near by."""
-        return families.by_rests_near(self.analysis, values, decaying=False)
+        """Instability by slow motions along rests near by, or by those of one coordinate."""
+        along = families.by_rests_near(self.analysis, values, decaying=False)
+        try:
+            return along or families.by_one_coordinate(self.analysis, lambda x: self._of(x)(values))
+        except (Failure, *NOT_THERE):
+            return None
 
     def _by_what_is_near(self, values: Mapping[str, Any]) -> Verdict | None:
         """What rests near by say of one, or its energy without constraints on velocities."""
+        decaying = families.by_rests_near(self.analysis, values, decaying=True)
+        return decaying or self._by_energy_of_more(lambda other: other(values), values)
+
+    def _by_energy_of_more(
+        self, judged: Callable[[Judge], Verdict], values: Mapping[str, Any] | None = None
+    ) -> Verdict | None:
+        """What the energy says of a rest without constraints on velocities, by the judge of that system."""
         of = self.analysis
-        verdict = families.by_rests_near(of, values, decaying=True)
-        if verdict is not None or not of.system.constraints:
-            return verdict
+        if not of.system.constraints:
+            return None
         try:
-            if families.at_rest(of) and of.balance.at(values).law.bounded:
-                return families.by_energy_of_more(of.system, lambda x: self._of_more(x)(values))
+            balance = of.balance if values is None else of.balance.at(values)
+            if families.at_rest(of) and balance.law.bounded:
+                return families.by_energy_of_more(of.system, lambda x: judged(self._of(x)))
         except (Failure, *NOT_THERE):  # without these constraints there may be no such rest
             return None
         return None
 
     @cache  # noqa: B019
-    def _of_more(self, system: System) -> Judge:
+    def _of(self, system: System) -> Judge:
         return Judge(type(self.analysis)(system, (), self.analysis.terms, suggests=False))
 
     @cached_property
@@ -252,19 +263,27 @@ class Judge:
                 system = displaced(system, name, {coordinate: c / shares[name] for coordinate, c in shares.items()})
         return system if taken else None
 
-    def _told_in_others(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
-        """What other coordinates say; not where others follow a drift unevenly: their rates do not stay."""
+    def for_all(self, verdict: Verdict) -> Verdict:
+        """An open verdict on all parameters, or what other coordinates say, or the energy without some constraints."""
+        if not (verdict.word.open and self.analysis.system.constraints):
+            return verdict
+        if self._in_others is not None:
+            return self._told_in_others(verdict, None)
+        return self._by_energy_of_more(_unconditional) or verdict
+
+    def _told_in_others(self, verdict: Verdict, values: Mapping[str, Any] | None) -> Verdict:
+        """What other coordinates say, at values or for all; not where others follow a drift unevenly: rates vary."""
         assert self._in_others is not None
         of, others = self.analysis, self._in_others.analysis
         try:
-            further = self._in_others(values)
+            further = _unconditional(self._in_others) if values is None else self._in_others(values)
             drift = others.balance.ignorable if Flaw.CYCLIC in further.flawed else ()
             every = of.system.coordinates if Flaw.HERE in further.flawed else drift
             rows = of.constraints.jacobian.polynomials if of.system.constraints else []
         except (Failure, *NOT_THERE):
             return verdict
         uneven = any(of.ring.dependencies(x, every) for row in rows for x in row)
-        if further.word.open or uneven:
+        if further.word.open or further.word is Word.DEPENDS or uneven:
             return verdict
         reasons = (
             reason
@@ -300,6 +319,12 @@ class Judge:
                 return None
             word = Word.STABLE
         return Verdict(word, (judged.theorem.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
+
+
+def _unconditional(judge: Judge) -> Verdict:
+    """The verdict on a motion that exists for all parameters; undecided where it needs conditions."""
+    of = judge.analysis
+    return of.stability.verdict if of.equilibrium.satisfied else undecided(Because.MOTION_OPEN, "")
 
 
 # Problem 11 along one parameter, from an analysis.

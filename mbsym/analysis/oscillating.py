@@ -27,7 +27,7 @@ from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.rates import without_velocity
-from mbsym.expressions.tree import Call, Expression, Negative, Operation
+from mbsym.expressions.tree import ZERO, Call, Expression, Negative, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.letters import letters_as
 from mbsym.mechanics.motion import relations
@@ -67,7 +67,8 @@ class Oscillating:
     ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off; ``real``:
     by the signs of the parameters frequencies at eps = 0 are real and not zero; ``resonances``: the divisors that are
     not known to be different from zero by them.  ``real_amplitude``: so is a determined amplitude.  ``velocities``:
-    variables that are rates of others.  ``attracts``: whether motions near a single cycle come closer to it for small
+    variables that are rates of others; ``deviating``: coordinates that mean deviations from a motion in which they are
+    not zero.  ``attracts``: whether motions near a single cycle come closer to it for small
     eps > 0, None where that is not known, or depends.
     """
 
@@ -82,6 +83,7 @@ class Oscillating:
     real_amplitude: bool = True
     attracts: bool | None = None
     velocities: tuple[str, ...] = ()
+    deviating: tuple[str, ...] = ()
 
     @property
     def phase(self) -> str:
@@ -332,6 +334,7 @@ def oscillating(
         expansion.kind is Amplitude.FREE or size == "positive",
         None if expansion.exponent is None else _ATTRACTS.get(_sign(analysis, tower, expansion.exponent[1])),
         () if system.speeds else system.velocities,
+        tuple(x.coordinate for x in system.motion if taylor and (x.value, x.rate) != (ZERO, ZERO)),
     )
 
 

@@ -25,7 +25,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model.substitution import held, put
-from mbsym.model.system import System, acceleration_name, rational, velocity_name
+from mbsym.model.system import InitialValue, System, acceleration_name, rational, velocity_name
 
 if TYPE_CHECKING:
     from mbsym.mechanics.constraints.rows import Row
@@ -70,7 +70,8 @@ def missing_values(system: System, values: Mapping[str, Value]) -> tuple[str, ..
 def at_numbers(system: System, values: Mapping[str, Value]) -> System:
     """The system with numbers in place of its parameters; a relation decides about its own left side.
 
-    Of the unperturbed motion only the rates stay.  Raises KeyError where a number is missing.
+    Of the unperturbed motion only the rates stay, and where constraints begin.  Raises KeyError where a number is
+    missing.
     """
     dependent = {item.name: item.value for item in system.relations}
     numbers: dict[str, Expression] = {
@@ -86,7 +87,12 @@ def at_numbers(system: System, values: Mapping[str, Value]) -> System:
         for name in ready:
             numbers[name] = _folded(substitute(pending.pop(name), numbers))
     turning = tuple(replace(entry, value=ZERO) for entry in system.motion)
-    bare = replace(held(system), parameters=(), relations=(), assumptions=(), notation=(), initial=(), motion=turning)
+    # Constraints have the rank of the branch on which the description begins.
+    on_motion = tuple(InitialValue(entry.coordinate, entry.value, entry.rate) for entry in system.motion)
+    begun = (system.initial or on_motion) if system.constraints else ()
+    bare = replace(
+        held(system), parameters=(), relations=(), assumptions=(), notation=(), initial=begun, motion=turning
+    )
     numeric_system: System = put(replace(bare, time_scale=None), numbers)
     return replace(
         numeric_system, loads=tuple(load for x in numeric_system.loads if (load := x.simplified()) is not None)

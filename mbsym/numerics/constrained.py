@@ -33,6 +33,7 @@ from mbsym.mechanics.constraints.dependence import Dependent, counted_anew, depe
 from mbsym.mechanics.constraints.dynamics import (
     Chosen,
     ConstrainedDynamics,
+    Kept,
     conditions,
     conditions_in_states,
     constrained_dynamics,
@@ -60,6 +61,9 @@ CERTAIN = 1e-6
 
 #: Positions beside the initial one at which the rank is looked at, and how far away, in radians or as parts.
 BESIDE, AWAY = 3, 0.05
+
+#: Positions about the start at which rows are measured, each coordinate within its extent.
+ABOUT = 5
 
 #: The least eigenvalue of M with ones on its diagonal that is not zero to roundings.
 MASSLESS = 1e-13
@@ -304,7 +308,24 @@ class Constraints:
         """All rows, and which follow from others; of too many that hang together the independent ones alone."""
         sets = self.dependent(len(self.names)), self.dependent(self.holonomic)
         rows, counted = counted_anew(range(len(self.names)), self.kept, *sets)
-        return Chosen(tuple((self.names[k].constraint, self.names[k].component) for k in rows), *counted)
+        usual = self.usual if sets[0] else {}
+        kept = tuple((self.names[k].constraint, self.names[k].component) for k in rows)
+        return Chosen(kept, counted[0], counted[1], usual)
+
+    @cached_property
+    def usual(self) -> dict[Kept, Fraction]:
+        """S_ii of single rows at the median of positions about the start, whatever these keep; as powers of 2."""
+        source, state = np.random.default_rng(11), np.array([float(x) for x in self._scenario.state])
+        ways = [source.uniform(-1, 1, self.size) * self.extents(state) for _ in range(ABOUT)]
+        with np.errstate(all="ignore"):
+            places = [self.displaced(0.0, state, way) for way in ways]
+            rows = [self.at(0.0, place).partials @ self.weights(0.0, place) for place in places]
+        found: dict[Kept, Fraction] = {}
+        for name, sizes in zip(self.names, np.transpose([np.sum(row**2, axis=1) for row in rows]), strict=True):
+            positive = sizes[np.isfinite(sizes) & (sizes > 0)]
+            if not name.component and len(positive):
+                found[name.constraint, 0] = Fraction(2) ** round(float(np.log2(np.median(positive))))
+        return found
 
     @property
     def redundant(self) -> tuple[RowName, ...]:
@@ -332,7 +353,9 @@ class Constraints:
             return False
         sizes, small = self.extents(state), AWAY / 10
         rows = self.at(0.0, state).partials * sizes
-        lengths = _positive(np.linalg.norm(rows, axis=1))
+        # A row may vanish in passing, but for roundings: then it is measured by what it is beside the position.
+        beside = self.at(0.0, self.displaced(0.0, state, AWAY * sizes * source.choice((-1, 1), n))).partials * sizes
+        lengths = _positive(np.maximum(*(np.linalg.norm(x, axis=1) for x in (rows, AWAY * beside))))
         left, values, right = np.linalg.svd(rows / lengths[:, None])
         rank = int(np.sum(values > DEPENDENT * values[0]))
         if rank in (count, n):

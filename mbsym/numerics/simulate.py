@@ -50,7 +50,8 @@ class Trajectory:
     (m,).  ``breakdown`` says why the trajectory ends before the last time asked for; ``interrupted`` that the user
     stopped it.  ``between`` is the largest kinetic energy between samples that are few: a motion sampled at whole
     periods seems to rest.  ``passed`` is what is not smooth, or narrow, on the way; None where there is no such thing.
-    ``least_pivot`` is how far a pivot of M fell, and when (see there); None where nobody has looked.
+    ``least_pivot`` is how far a pivot of M fell, and when (see there); None where nobody has looked.  ``rounding``: a
+    kinetic energy that is nothing else (``kinetic_rounding``).
     ``table`` has all rows, where these are some of very many; ``between`` is the largest kinetic energy of all then.
     """
 
@@ -70,6 +71,7 @@ class Trajectory:
     between: float = 0.0
     passed: Passed | None = None
     least_pivot: tuple[float, float] | None = None
+    rounding: float = 0.0
     table: Table | None = None
 
     @property
@@ -79,9 +81,10 @@ class Trajectory:
 
     @property
     def largest_kinetic(self) -> float:
-        """The largest kinetic energy at the samples, or between them where they are few."""
+        """The largest kinetic energy at the samples, or between them where they are few; 0 where it is rounding."""
         known = np.asarray(self.kinetic, dtype=float)
-        return max(self.between, float(np.max(np.abs(known[np.isfinite(known)]), initial=0.0)))
+        largest = max(self.between, float(np.max(np.abs(known[np.isfinite(known)]), initial=0.0)))
+        return largest if largest > self.rounding else 0.0
 
     @property
     def energy_scale(self) -> float:

@@ -3,8 +3,9 @@
 Ideal constraints do no work in displacements that they allow at an instant; so the balance of the energy is that of the
 open tree if every velocity row is homogeneous, J q' = 0: then the actual velocity is such a displacement.  With a part
 j(q, t) besides (a wall that moves, a table that turns) constraint forces take power from outside, and nothing is
-claimed but of equations that are exactly linear, where deviations from the motion obey J q' = 0.  The momentum of a
-cyclic coordinate is constant where no row knows the coordinate or its velocity: constraint forces do not act on it.
+claimed but of equations that are exactly linear where j does not depend on q: deviations from the motion obey J q' = 0
+then.  The momentum of a cyclic coordinate is constant where no row knows the coordinate or its velocity: constraint
+forces do not act on it.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ class ConstrainedBalance(Balance):
         moving = set(self.scene.system.coordinates) - self._resting
         if self._rows is None:
             return EnergyLaw.UNKNOWN
-        if (not self._homogeneous or self._touched & moving) and not self.exactly_linear:
+        if (not self._homogeneous or self._touched & moving) and not self._deviates_homogeneously:
             return EnergyLaw.UNKNOWN
         return free._law()
 
@@ -201,9 +202,20 @@ class ConstrainedBalance(Balance):
         return bool(ring.reduce(left - right).is_zero())
 
     @cached_property
-    def _homogeneous(self) -> bool:
+    def _rates(self) -> tuple[Polynomial, ...]:
+        """j(q, t) of every row."""
         still = {self.ring.index("velocity", name): self.ring.zero for name in self.scene.system.coordinates}
-        return all(self.ring.substitute(row.velocity, still).is_zero() for row in self._rows or ())
+        return tuple(self.ring.substitute(row.velocity, still) for row in self._rows or ())
+
+    @property
+    def _homogeneous(self) -> bool:
+        return all(x.is_zero() for x in self._rates)
+
+    @property
+    def _deviates_homogeneously(self) -> bool:
+        """Whether deviations obey J q' = 0, J constant, exactly."""
+        coordinates = self.scene.system.coordinates
+        return self.exactly_linear and not any(self.ring.dependencies(x, coordinates) for x in self._rates)
 
     @cached_property
     def _touched(self) -> set[str]:

@@ -257,7 +257,7 @@ def assemble(
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
     result = Linearisation(
-        coordinates=coordinates or scene.system.coordinates,
+        coordinates=scene.system.coordinates if coordinates is None else coordinates,
         M=Matrix.of(ring, M.rows),
         D=Matrix.of(ring, symmetric(C).rows),
         G=Matrix.of(ring, skew(C).rows),

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from mbsym.expressions.message import GAP, Message, Said, pieces, plain_notation
 from mbsym.expressions.safe import UNBROKEN
-from mbsym.expressions.tree import Expression, Negative, Operation, text
+from mbsym.expressions.tree import Expression, Negative, Number, Operation, text
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.python import readable_name
 from mbsym.formulas.straight_line import Dialect, listing
@@ -480,10 +480,12 @@ def _first(parts: Iterable[tuple[str, str]]) -> str:
 
 
 def _divided_last(value: Expression) -> Expression:
-    """v t/r of (v/r) t: beside a space for a product v/r t would be read as v/(r t)."""
+    """v t/r of (v/r) t, 6 of 2 3: beside a space for a product v/r t would be read as v/(r t), 2 3 as one number."""
     match value:
         case Negative(operand):
             return Negative(_divided_last(operand))
+        case Operation("*", Number(left), Number(right)):  # side by side they would be read as one
+            return Number(left * right)
         case Operation("*", Negative(Operation("/") as quotient), factor):
             return Negative(_divided_last(Operation("*", quotient, factor)))
         case Operation("*", Operation("/", above, below), factor):

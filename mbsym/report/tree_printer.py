@@ -94,6 +94,8 @@ class TreePrinter(ABC, Generic[Symbols]):
                 return self.power(self._within(base, 5 if _is_fraction(base) else 4), self(exponent)), 3
             case Operation("*", Negative(left), right):
                 return self._written(Negative(Operation("*", left, right)))
+            case Operation("*", Number(left), Number(right)):  # side by side they would be read as one
+                return self._written(Number(left * right))
             case Operation("*", left, right):
                 return self._within(left, 2) + self.times + self._within(right, 2), 2
             case Operation(operator, left, right):

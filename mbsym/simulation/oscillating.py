@@ -156,9 +156,14 @@ def symbol_values(
     scaled = {name: Fraction(value) / eps ** powers.get(name, 0) for name, value in state.items()}
     values = {f"#{name}": scaled[name] for name, _ in oscillation.constants if name in scaled}
     values[AMPLITUDE] = scaled[oscillation.leading]
+    if not oscillation.centre.is_zero():
+        numbers = {name: Fraction(value) for name, value in base.parameters.items()}
+        centre = Numeric(solution, numbers, eps).value(oscillation.centre)
+        away = rationals.ball(values[AMPLITUDE]) - centre
+        values[AMPLITUDE] = Fraction(0) if away.contains(0) else rationals.fraction(rationals.middle(away))
     needed = oscillation.kind is Amplitude.FREE and solution.symbols.get(AMPLITUDE) not in put
     if needed and values[AMPLITUDE] == 0:
-        text = "[[name]] begins at zero: the initial state gives no amplitude"
+        text = "[[name]] begins at the centre of the oscillation: the initial state gives no amplitude"
         raise NoClosedForm(text, name=oscillation.leading)
     return values
 
@@ -187,15 +192,18 @@ class Numeric:
         self._values = dict.fromkeys(plain, arb(0)) | balls
         self.eps = rationals.ball(eps)
         with ctx.workprec(BITS):
-            speed = sum((self._of(x) * self.eps ** (k + 1) for k, x in enumerate(self.oscillation.corrections)), arb(1))
-            speed = speed * self._of(self.oscillation.frequency)
+            speed = sum(
+                (self.value(x) * self.eps ** (k + 1) for k, x in enumerate(self.oscillation.corrections)), arb(1)
+            )
+            speed = speed * self.value(self.oscillation.frequency)
             self.waves = {
                 name: self._summed(series)
                 for name, series in zip(self.oscillation.names, self.oscillation.series, strict=True)
             }
         self.speed, self.rate = speed, float(speed)
 
-    def _of(self, x: Element) -> Any:
+    def value(self, x: Element) -> Any:
+        """A ball."""
         return self.oscillation.tower.enclosed(x, self._values).real
 
     def _summed(self, series: Sequence[Harmonics]) -> dict[int, tuple[Any, Any]]:
@@ -203,7 +211,7 @@ class Numeric:
         for n, harmonics in enumerate(series):
             for k, (c, s) in harmonics.waves.items():
                 a, b = total.get(k, (arb(0), arb(0)))
-                total[k] = (a + self._of(c) * self.eps**n, b + self._of(s) * self.eps**n)
+                total[k] = (a + self.value(c) * self.eps**n, b + self.value(s) * self.eps**n)
         return total
 
     def at(self, time: float, name: str) -> Any:

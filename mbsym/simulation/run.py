@@ -43,7 +43,7 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.models import LinearisedDynamics, droppable, scenario_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import reduced
-from mbsym.numerics.planning.sizes import kinetic_between
+from mbsym.numerics.planning.sizes import kinetic_between, kinetic_rounding
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of, state_names
 from mbsym.numerics.watched import between_rows, nearest_to_singular
@@ -124,7 +124,9 @@ def simulate(
     happened = None
     if watching is not None:
         motion, happened = watching.happened(motion)
-    motion = replace(motion, between=motion.between or kinetic_between(dynamics, motion, chosen.completed))
+    between = motion.between or kinetic_between(dynamics, motion, chosen.completed)
+    begin = float(motion.times[0]), motion.states[:, 0]
+    motion = replace(motion, between=between, rounding=kinetic_rounding(dynamics, *begin))
     error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if motion.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
         held = resting.names if resting is not None and resting.proved else ()

@@ -224,3 +224,42 @@ def test_integrals_stand_beside_the_solution():
     other = run(FAST, "--order", "1", "--integral", "psi=p*gamma1")
     assert (other.exit_code, other.stdout) == (1, "")
     assert "its rate was not found to be this" in other.stderr
+
+
+DUFFING = """mbsym: 1
+name: Duffing
+parameters: {{w: positive, eps: real}}
+small parameter: eps
+bodies:
+  - {{name: p, connection point: [x, 0, 0], mass: 1, coordinates: [x]}}
+loads:
+  - potential: w**2*({x})**2/2 + eps*({x})**4/4
+values: {{w: 1, eps: 0.1}}
+initial: {{x: {start}}}
+"""
+
+
+def test_another_zero_of_the_coordinate_changes_nothing_but_the_centre(tmp_path):
+    """With x - 2 in place of x the series has 2 more, is as good, and what it begins with is amplitude + 2."""
+    told = []
+    for name, x, start in (("plain", "x", "0.5"), ("shifted", "2 - x", "1.5")):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(DUFFING.format(x=x, start=start), encoding="utf-8")
+        told.append(" ".join(run(str(path)).stdout.split()))
+    plain, shifted = (re.findall(r"Over one period.*(?=Measured at)", text)[0] for text in told)
+    assert plain == shifted
+    assert "Here it is amplitude, the value of x at the phase 0" in told[0]
+    assert "x(0) = amplitude cos(phase) + 2" in told[1]
+    assert "at the phase 0, where x has no term sin(phase), it is amplitude + 2" in told[1]
+
+
+def test_variables_of_a_motion_that_is_not_zero_are_told_to_be_deviations(tmp_path):
+    path = tmp_path / "pendulum.yaml"
+    path.write_text(
+        "mbsym: 1\nname: p\nbodies: [{name: b, rotation: {axes: [3], angles: [th]}, mass centre: [0, 1, 0], mass: 1}]\n"
+        "loads: [{uniform gravity: {vector: [0, -1, 0]}}]\nmotion: {th: pi}\ninitial: {th: 3}\n",
+        encoding="utf-8",
+    )
+    assert "th: here deviations from the unperturbed motion." in run(str(path)).stdout
+    path.write_text(path.read_text(encoding="utf-8").replace("[0, 1, 0]", "[0, -1, 0]").replace("pi", "0"))
+    assert "deviations from" not in run(str(path)).stdout

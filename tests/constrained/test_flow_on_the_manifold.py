@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import combinations
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -228,6 +229,31 @@ def test_linearised_flows(kind: Any, dependent: bool) -> None:
             # Beside rows that follow from others accelerations off the manifold depend on the choice: O(STEP).
             assert compared(analysis) < 1e-4, text
     assert tried >= 4
+
+
+@pytest.mark.parametrize(("kind", "seed"), [(trailers, 1), (trailers, 4), (masses, 1), (masses, 3)])
+def test_every_choice_of_dependent_coordinates(kind: Any, seed: int) -> None:
+    """The same roots for each; a choice is refused only where the constraints cannot be solved for it."""
+    text = kind(Random(f"{kind.__name__} {seed}"), False)
+    plain = analysed(text)
+    assert plain is not None
+    constraints = Dynamics(closed(scenario(plain.system)).scenario).constraints
+    assert constraints is not None
+    begin = np.array([float(x) for x in constraints._scenario.state])
+    jacobians = [constraints.at(0.0, place).partials for place in constraints._places(begin)]
+    names, rank = plain.system.coordinates, plain.constraints.velocity_rank
+    slopes, basis, _ = flow(plain.system)
+    roots = np.linalg.eigvals(basis.T @ slopes @ basis)
+    solved = 0
+    for chosen in combinations(range(len(names)), rank):
+        best = max(np.linalg.svd(jacobian[:, chosen])[1][rank - 1] for jacobian in jacobians)
+        own = text.replace("motion:", f"dependent: [{', '.join(names[k] for k in chosen)}]\nmotion:")
+        analysis = analysed(own)
+        assert (analysis is None) == (best < 1e-6), own
+        if analysis is not None:
+            assert apart(np.linalg.eigvals(numbers(analysis.state_space.A.polynomials)), roots) < 1e-4, own
+            solved += 1
+    assert solved >= 2
 
 
 def test_roots_in_speeds() -> None:

@@ -10,6 +10,7 @@ import ctypes
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -24,7 +25,8 @@ from mbsym.report.code import c_source
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.exports import fmu
 from mbsym.report.targets import FORMATS
-from tests.constrained.test_redundant_rows import begun, by_all_rows, case, mechanism, parallelogram
+from tests.constrained.test_redundant_rows import begun, by_all_rows, case, parallelogram
+from tests.random_systems import closed_tree, coupled, mechanism
 
 #: (t, x) -> q''.
 Rates = Callable[[Any], Any]
@@ -36,7 +38,9 @@ SYSTEMS = {
     "axle": case("four-wheels-on-an-axle"),
     "ball": case("ball-in-a-cylinder"),
     "sarrus": case("sarrus-linkage"),
-    **{f"random {seed}": mechanism(Random(f"mechanism {seed}")) for seed in (1, 6, 11, 19)},
+    **{f"random {seed}": closed_tree(Random(f"mechanism {seed}")) for seed in (1, 6, 11, 19)},
+    **{f"{kind} {seed}": mechanism(kind, seed) for kind in ("axle", "ball", "coupled") for seed in (0, 1)},
+    "pins in line": coupled(Random("coupled 1"), "relation", Fraction(0)),
 }
 
 

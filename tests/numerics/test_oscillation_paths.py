@@ -82,7 +82,7 @@ def test_in_coordinates_with_numbers_put_in():
 
 def test_without_an_amplitude_nothing_is_drawn():
     system = mbsym.loads(DUFFING + NUMBERS.replace("1/2", "0")).system
-    with pytest.raises(NoClosedForm, match="begins at zero"):
+    with pytest.raises(NoClosedForm, match="begins at the centre"):
         oscillation_paths(system, oscillating(Analysis(system, (12,)), 1))
 
 

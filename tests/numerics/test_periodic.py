@@ -119,6 +119,18 @@ def test_a_conical_pendulum_closes_up_to_a_revolution() -> None:
     assert {one.reason for one in found.reasons} >= {"psi is cyclic", "the energy is conserved"}
 
 
+def test_a_coordinate_that_cancels_is_cyclic() -> None:
+    """Kepler's motion with x = r cos f, y = r sin f: of energy, momentum, time and angle each gives a multiplier 1."""
+    found = orbit(
+        "mbsym: 1\nname: polar\nbodies: [{name: p, mass: 1, connection point: [r*cos(f), r*sin(f), 0], "
+        "coordinates: [r, f]}]\nloads: [potential: -1/r]\ninitial: {r: 1, f: {position: 0, velocity: 1.1}}\n",
+        7,
+        {"f": 1},
+    )
+    assert found.trivial == 4
+    assert {one.reason for one in found.reasons} >= {"f is cyclic", "the momentum of f is conserved"}
+
+
 def test_the_orbit_of_arenstorf() -> None:
     """The reference of cr3bp: period and velocity to nine digits."""
     published = reference("cr3bp")["parameters"]["arenstorf"]

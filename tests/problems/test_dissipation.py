@@ -306,3 +306,20 @@ def test_drag_that_grows_with_the_square_of_the_speed(force: dict[str, str], law
 def test_a_force_with_a_kink_has_no_first_approximation(force: str) -> None:
     with pytest.raises(Unavailable, match="kink"):
         point({"generalized force": {"x": force}}).stability  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    ("row", "law"),
+    [
+        ("x_dot = y", UNKNOWN),  # the force that keeps it has the power lambda y
+        ("x_dot = y_dot", NOT_GROWING),
+        ("x_dot = y_dot + W", NOT_GROWING),  # of deviations
+    ],
+)
+def test_what_ties_a_velocity_to_a_place_does_work(row: str, law: EnergyLaw) -> None:
+    """m y'' + b y' + 2 y = 0 beside x' = y, whose constraint force is x'' + x: d/dt (T + V) = -b y'^2 + (y' + x) y."""
+    moved = {"motion": {"x": {"rate": "W"}, "y": 0}} if "W" in row else {}
+    loads = [{"generalized force": {"y": "-b*y_dot"}}]
+    found = point(*loads, spring="W" not in row, constraints=[{"velocity": row}], **moved)
+    assert found.balance.law is law
+    assert "Lagrange" not in " ".join(map(str, found.stability.verdict.theorems)) or law is NOT_GROWING

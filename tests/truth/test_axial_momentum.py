@@ -51,7 +51,7 @@ def test_no_such_integral_of_a_body_that_is_not_symmetric() -> None:
 
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(
-    # C^2 n^2 > 4 A m g l (Maievskii); hanging it is stable at any rate, though K > 0 only below n^2 (A - C) = m g l
+    # C^2 n^2 > 4 A m g l (Maievskii); hanging it is stable at any rate, though K > 0 for n^2 (A - C) < m g l only
     ("length", "rate", "wanted"),
     [("1", "11", Word.STABLE_BUT_CYCLIC), ("1", "10", Word.UNSTABLE), ("-1", "3", Word.STABLE_BUT_CYCLIC)],
 )

@@ -51,11 +51,35 @@ def test_a_skate_in_a_well(potential: str, place: str, damping: str, wanted: Wor
     assert word(text) is wanted
 
 
+def test_a_skate_that_looks_along_the_other_axis() -> None:
+    """The velocity that depends on the others is another one there."""
+    text = SKATE.replace("V,", HELD.replace("th**2", "(th - pi/2)**2") + ",").replace("D}", "1/2}")
+    assert word(text.replace("{x: 0, y: Y, th: 0}", "{x: -1, y: 0, th: pi/2}")) is Word.ASYMPTOTIC_BUT_STEADY
+
+
 @pytest.mark.parametrize(("potential", "place"), [("k*(x**2 - y**2)/2 + c*th**2/2", "0"), (HELD, "1")])
 def test_an_energy_without_minimum_proves_nothing(potential: str, place: str) -> None:
     """Across the edge V falls, or is not stationary: the edge holds the skate there."""
     text = SKATE.replace("V,", f"{potential},").replace("Y", place).replace("D}", "0}")
     assert word(text).open
+
+
+@pytest.mark.parametrize(
+    ("potential", "wanted"),
+    [
+        (HELD, Word.STABLE),
+        (WELL, Word.STABLE_BUT_CYCLIC),
+        ("-k*x**2/2 + c*th**2/2", Word.UNSTABLE),
+        # It rests across the slope, where it could not without its edge; turned by a little it slides away.
+        ("k*y", Word.UNDECIDED),
+    ],
+)
+def test_what_is_said_of_a_skate_for_all_parameters(potential: str, wanted: Word) -> None:
+    text = SKATE.replace("V,", f"{potential},").replace("Y", "0").replace("d*(", "0*(").replace(", d: real", "")
+    text = text.replace("k: real, c: real", "k: positive, c: positive").replace("values: {k: 1, c: 4, d: D}\n", "")
+    found = mbsym.loads(text, (4, 5, 6)).stability
+    assert found.verdict.word is wanted
+    assert found.numerical is None or found.numerical.word is wanted
 
 
 VALLEY = """
@@ -164,3 +188,41 @@ def test_a_wheel_whose_rows_vanish_one_after_another(centre: str, gravity: str, 
     assert [x.verdict.word for x in listed.equilibria] == [Word.STABLE, Word.UNSTABLE]
     assert listed.complete
     assert not listed.remarks
+
+
+SPRING = "spring: {between: [{body: p, point: [0, 0, 0]}, {body: 0, point: [END, 0, 0]}], stiffness: k, length: l}"
+
+
+@pytest.mark.parametrize("slack", ["0", "1/10"])
+def test_a_mass_between_two_springs_without_tension(slack: str) -> None:
+    """V = k x^2 + k (y^2 + z^2)^2/(4 l^2) + ...; where the springs are longer than that they push aside."""
+    text = f"""
+mbsym: 1
+name: between two springs
+parameters: {{l: positive, k: positive}}
+bodies:
+  - {{name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}}
+loads: [{SPRING.replace("END", f"l - {slack}")}, {SPRING.replace("END", f"{slack} - l")}]
+motion: {{x: 0, y: 0, z: 0}}
+values: {{l: 3, k: 2}}
+"""
+    assert word(text) is (Word.STABLE if slack == "0" else Word.UNSTABLE)
+
+
+@pytest.mark.parametrize(
+    ("potential", "force", "wanted"),
+    [
+        # Along y = 0 all is at rest, and x = x' t
+        ("x**2*y**2", NO_FORCE, Word.UNSTABLE),
+        ("x**2*y**2 + y**4", NO_FORCE, Word.UNSTABLE),
+        ("x**2*y**2 + y**4 + x**4", NO_FORCE, Word.STABLE),
+        # y = 0, x'' = 4 x^3: it leaves, though y is held by friction
+        ("x**2*y**2 - x**4 + y**2", "damper: {coordinate: y, coefficient: 1}", Word.UNSTABLE),
+        # What comes to rest elsewhere along y = 0 need not leave
+        ("x**2*y**2", DAMPED, None),
+    ],
+)
+def test_one_coordinate_moves_while_the_other_rests(potential: str, force: str, wanted: Word | None) -> None:
+    text = VALLEY.replace("POINT", "x, y").replace("V,", f"{potential},").replace("FORCE", force).replace("X", "0")
+    found = word(text)
+    assert found.open if wanted is None else found is wanted

@@ -7,9 +7,9 @@ are 0 or 1,
 
     c = 1 where S_ii w_k > S_kk w_i, else 0;      x_k <- c x_i + (1 - c) x_k,      x_i <- c x_k + (1 - c) x_i
 
-w measures rows by their own kind, since a moment and a force have other units.  r pivots are taken, what is left is
-zero where the rows keep the rank r, and a pivot vanishes only where all rows together have a lower one.  The solution
-does not depend on the choice, so that nothing jumps where the choice changes, and derivatives are those of the
+w measures rows by their own kind, since a moment and a force have other units (``measures``).  r pivots are taken, what
+is left is zero where the rows keep the rank r, and a pivot vanishes only where all rows together have a lower one.  The
+solution does not depend on the choice, so that nothing jumps where the choice changes, and derivatives are those of the
 solution.
 
 Exchanges of all rows cost much code.  Of more than MOST_DEPENDENT that hang together each is taken in its turn, where
@@ -24,7 +24,7 @@ Source: Golub & Van Loan, Matrix Computations, 4th ed. 2013, 4.2.8 (symmetric pi
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -81,9 +81,21 @@ def counted_anew(
     return rows, [tuple(counted(dependent) for dependent in sets if not long & {*dependent.rows}) for sets in kinds]
 
 
-def measured(name: RowName) -> Hashable:
-    """What has the units of this row: its kind, or for what has units of its own its constraint."""
-    return name.kind if name.component else name.constraint
+def measures(
+    program: Program, names: Sequence[RowName], diagonal: Sequence[Node], usual: Mapping[tuple[int, int], Fraction]
+) -> list[Node]:
+    """w of every row: the sum of S_ii over the rows of its kind, or S_ii and what that usually is, where it is known.
+
+    So the single row of a constraint, which may have units of its own, is not chosen where it vanishes in passing.
+    """
+    known = [usual.get((name.constraint, name.component)) for name in names]
+    sums: dict[str, Node] = {}
+    for name, size in zip(names, diagonal, strict=True):
+        sums[name.kind] = sums.get(name.kind, program.zero) + size
+    return [
+        sums[name.kind] if x is None else size + program.number(x)
+        for name, size, x in zip(names, diagonal, known, strict=True)
+    ]
 
 
 class Compliance:
@@ -99,7 +111,7 @@ class Compliance:
         matrix: Sequence[Sequence[Node]],
         right: Sequence[Node],
         dependent: Sequence[Dependent],
-        kinds: Sequence[Hashable],
+        sizes: Sequence[Node],
         singular: str,
     ) -> None:
         self.program, self.dependent = program, dependent
@@ -114,11 +126,8 @@ class Compliance:
         self._columns = columns
         block = [[matrix[i][j] - self._paired(x, y) for j, y in zip(tied, columns, strict=True)]
                  for i, x in zip(tied, columns, strict=True)]  # fmt: skip
-        sizes: dict[Hashable, Node] = {}
-        for i in range(len(matrix)):
-            sizes[kinds[i]] = sizes.get(kinds[i], program.zero) + matrix[i][i]
         rest = [right[i] - self._paired(x, own) for i, x in zip(tied, columns, strict=True)]
-        self._second = _Chosen(program, block, rest, [sizes[kinds[i]] for i in tied], dependent)
+        self._second = _Chosen(program, block, rest, [sizes[i] for i in tied], dependent)
         self.owners = tuple((i,) for i in loose) + tuple(
             group.rows for group in dependent for _ in range(_pivots_of(group))
         )

@@ -34,7 +34,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from random import Random
 from types import MappingProxyType
 
@@ -48,7 +49,7 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import articulation
-from mbsym.mechanics.constraints.dependence import Compliance, Dependent, measured
+from mbsym.mechanics.constraints.dependence import Compliance, Dependent, measures
 from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept_rows
 from mbsym.mechanics.constraints.speed_rows import speed_rows, state_rows
 from mbsym.mechanics.factorisation import Elimination, mass_matrix
@@ -149,12 +150,14 @@ def holonomic_first(rows: Sequence[Row]) -> tuple[Row, ...]:
 class Chosen:
     """The ``rows`` of which equations are made, the holonomic ones first, and those among them that are dependent.
 
-    ``dependent`` counts all rows, ``in_positions`` the holonomic ones alone.
+    ``dependent`` counts all rows, ``in_positions`` the holonomic ones alone.  ``usual``: S_ii as it usually is, of
+    constraints with a single row.
     """
 
     rows: tuple[Kept, ...]
     dependent: tuple[Dependent, ...] = ()
     in_positions: tuple[Dependent, ...] = ()
+    usual: Mapping[Kept, Fraction] = field(default_factory=dict)
 
 
 def constrained_dynamics(
@@ -250,13 +253,13 @@ def _solved(
     shared = {(i, j): paired(weighted[i], weighted[j]) for i in range(len(rows)) for j in range(i + 1)}
     compliance = [[shared[max(i, j), min(i, j)] for j in range(len(rows))] for i in range(len(rows))]
 
-    kinds = [measured(row.name) for row in rows]
+    sizes = measures(program, [row.name for row in rows], [row[i] for i, row in enumerate(compliance)], chosen.usual)
 
     def answered(right: Sequence[Node], dependent: Sequence[Dependent]) -> Compliance:
         """S x = -right over as many rows, the first ones."""
         count = len(right)
         block = [row[:count] for row in compliance[:count]]
-        return Compliance(program, block, [-x for x in right], dependent, kinds[:count], DEPENDENT)
+        return Compliance(program, block, [-x for x in right], dependent, sizes[:count], DEPENDENT)
 
     def carried(start: Sequence[Node], weights: Sequence[Node]) -> tuple[Node, ...]:
         """M^-1 (b + J^T weights) from L^-T b."""

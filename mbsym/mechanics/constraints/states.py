@@ -47,10 +47,14 @@ PRECISION, WIDTH = 640, -200
 #: Below 2 to this, pivots of a place that Newton's iteration has almost led to the constraints are those of no row.
 ALMOST = -100
 
+#: What others leave at most of a row of length 1 that may follow from them on the constraints, near these: the first
+#: that leads to a place where all rows hold.
+FAINT = (1e-1, 1e-3, 1e-6)
+
 #: How far from the description's position its own branch is looked for; how far from there states are, and parameters.
 NEAR, APART, CHANGED = 0.5, 0.12, 0.15
 
-_ATTEMPTS, _TRIED, _NEWTON = 40, 8, 60
+_ATTEMPTS, _TRIED, _NEWTON, _LED = 40, 8, 60, 8
 
 
 @dataclass(frozen=True)
@@ -134,7 +138,7 @@ class Manifold:
         if self._begin is None:
             return None
         try:
-            return self._rank(self._root(self._moved(self._begin, random.Random(SEED)), self.system.coordinates))
+            return self._rank(self._followed(self._moved(self._begin, random.Random(SEED))))
         except NOT_THERE:
             return None
 
@@ -189,38 +193,42 @@ class Manifold:
         lower = Lowering(Balls(dict(values)), dict(values))
         try:
             values |= {name: arb(lower(place).mid()) for name, place in places.items() if place is not None}
-            begun = self._near(values)
+            begun = self._followed(values)
             way = {name: lower(rate) for name, rate in rates.items() if rate is not None}
         except NOT_THERE:
             return None
         largest = max((float(abs(x).upper()) for x in way.values()), default=0.0)
-        if begun is None or not largest:
+        if not largest:
             return begun
         further = {name: arb((begun[name] + x * arb(APART / largest)).mid()) for name, x in way.items()}
         timed = {"t": arb(APART / largest)}
         with suppress(*NOT_THERE):
-            return self._near(begun | further | timed) or begun
+            return self._followed(begun | further | timed)
         return begun
 
-    def _near(self, values: Mapping[str, Any]) -> dict[str, Any] | None:
-        """A root not far from a place.  Raises as ``_root`` does."""
-        root = self._root(dict(values), self.system.coordinates)
-        for name in self.system.coordinates:
-            if not abs(float(root[name].mid()) - float(values[name].mid())) <= NEAR * self._size(name, values[name]):
-                return None
-        return root
-
-    def _size(self, name: str, value: arb) -> float:
-        """What a distance from a coordinate's value is measured by: 1 + |value|, of an angle without whole turns."""
-        x = float(value.mid())
-        return 1 + abs(math.remainder(x, math.tau) if name in self.ring.angles else x)
+    def _sizes(self, place: Mapping[str, Any]) -> list[float]:
+        """What distances of coordinates are measured by: an angle x by 1 + |x| without whole turns, others by the
+        largest of them and by what moves rows as much as a turn by 1 does."""
+        names, angles = self.system.coordinates, self.ring.angles
+        values = [float(arb(place[name]).mid()) for name in names]
+        largest = max((abs(x) for name, x in zip(names, values, strict=True) if name not in angles), default=0.0)
+        n, found = len(names), [0.0] * len(names)
+        flat = self.program.evaluate([x for row in self._slopes(names) for x in row], place, Balls(dict(place)))
+        slopes = [abs(float(arb(x).mid())) for x in flat]
+        for row in (slopes[i : i + n] for i in range(0, len(slopes), n)):
+            turned = max((x for name, x in zip(names, row, strict=True) if name in angles), default=0.0)
+            found = [max(size, turned / x if x else 0.0) for size, x in zip(found, row, strict=True)]
+        return [
+            1 + abs(math.remainder(x, math.tau)) if name in angles else max(largest, size) or 1.0
+            for name, x, size in zip(names, values, found, strict=True)
+        ]
 
     def _beside(self, source: random.Random) -> OnManifold:
         """A state on the branch of the description's position."""
         begin = self._begin
         assert begin is not None
         if self.at_values:
-            values = self._root(self._moved(begin, source), self.system.coordinates)
+            values = self._followed(self._moved(begin, source))
         else:
             values = self._closed_anew(self._changed(self._moved(begin, source), source))
         return OnManifold(State(Balls(values), self._moving(Balls(values), values, source)), False)
@@ -233,13 +241,14 @@ class Manifold:
             for suffix in (velocity_name, acceleration_name):
                 values[suffix(name)] = arb(fmpq(source.randint(-40, 40) or 1, source.randint(1, 24)))
         done = self._pivots(begin, Balls(dict(begin)))
-        step = {k: arb(source.choice((-1, 1)) * source.randint(50, 100)) / 100 for k in range(len(names))}
+        sizes = self._sizes(begin)
+        step = {k: arb(source.choice((-1, 1)) * source.randint(50, 100) * x) / 100 for k, x in enumerate(sizes)}
         free = [k for k in range(len(names)) if k not in done.columns]
         for i, column in done.pivots:
             step[column] = -sum((done.rows[i][k] * step[k] for k in free), arb(0))
-        largest = max(float(abs(x).upper()) for x in step.values())
+        largest = max(float(abs(x).upper()) / size for x, size in zip(step.values(), sizes, strict=True))
         for k, name in enumerate(names):
-            moved = values[name] + step[k] * arb(APART * self._size(name, values[name]) / max(largest, 1.0))
+            moved = values[name] + step[k] * arb(APART / max(largest, 1.0))
             values[name] = arb(moved.mid())
         return values
 
@@ -420,13 +429,13 @@ class Manifold:
     def _enclosed(self, source: random.Random) -> OnManifold | None:
         values = self._drawn(source)
         if self._positions:
-            values = self._closed_anew(values)
+            values = self._closed_anew(values, far=True)
         return OnManifold(State(Balls(values), self._moving(Balls(values), values, source)), False)
 
-    def _closed_anew(self, values: dict[str, Any]) -> dict[str, Any]:
+    def _closed_anew(self, values: dict[str, Any], far: bool = False) -> dict[str, Any]:
         """A root in the coordinates, or where parameters are tied, too, in these as well."""
         try:
-            return self._root(values, self.system.coordinates)
+            return self._root(values, self.system.coordinates) if far else self._followed(values)
         except ZeroDivisionError:
             further = [x for x in self._unknowns if x not in self.system.coordinates]
             root = self._root(values, (*self.system.coordinates, *further))
@@ -434,10 +443,47 @@ class Manifold:
                 raise
             return root
 
-    def _root(self, values: dict[str, Any], names: Sequence[str]) -> dict[str, Any]:
+    def _followed(self, values: dict[str, Any]) -> dict[str, Any]:
+        """A root in the coordinates not far from a place; where rows follow from others on it alone, by the shortest
+        way.  Raises as ``_root`` does, ZeroDivisionError where it is far."""
+        names = self.system.coordinates
+        for faint in (None, *FAINT):
+            with suppress(ZeroDivisionError):
+                led, rows = (values, None) if faint is None else self._led(values, faint)
+                return self._not_far(values, self._root(led, names, rows))
+        raise ZeroDivisionError("no root was proved near the place")
+
+    def _not_far(self, values: Mapping[str, Any], root: dict[str, Any]) -> dict[str, Any]:
+        for name, size in zip(self.system.coordinates, self._sizes(values), strict=True):
+            if not abs(float(root[name].mid()) - float(values[name].mid())) <= NEAR * size:
+                raise ZeroDivisionError("on another branch, perhaps")
+        return root
+
+    def _led(self, values: dict[str, Any], faint: float) -> tuple[dict[str, Any], list[int]]:
+        """A place closer to phi = 0, and the rows that are independent there.
+
+        Off the constraints more rows are independent than on them, the farther the more: those of which the others
+        leave less than ``faint`` lead nowhere, and are left out.
+        """
+        names, sizes = self.system.coordinates, [arb(x) for x in self._sizes(values)]
+        m, n = len(self._positions), len(names)
+        nodes = [*self._positions, *(x for row in self._slopes(names) for x in row)]
+        rows: list[int] = []
+        for _ in range(_LED):
+            entries = [arb(arb(x).mid()) for x in self.program.evaluate(nodes, values, Balls(dict(values)))]
+            table = (entries[i : i + n] for i in range(m, len(entries), n))
+            slopes = [{k: x * sizes[k] for k, x in enumerate(row) if x != 0} for row in table]
+            rows, step = _shortest(slopes, entries[:m], faint)
+            values = values | {names[k]: arb((values[names[k]] - x * sizes[k]).mid()) for k, x in step.items()}
+        return values, sorted(rows)
+
+    def _root(
+        self, values: dict[str, Any], names: Sequence[str], chosen: Sequence[int] | None = None
+    ) -> dict[str, Any]:
         """A proved root of phi near a place, in those of the names that phi depends on most there.
 
-        Raises SingularPoint or NoValue as the rows do, ZeroDivisionError where no root was proved.
+        Steps are by the rows that are ``chosen``, or by all; the others must hold at the root.  Raises SingularPoint or
+        NoValue as the rows do, ZeroDivisionError where no root was proved.
         """
         slopes = self._slopes(names)
         flat = [x for row in slopes for x in row]
@@ -447,12 +493,14 @@ class Manifold:
             entries = self.program.evaluate([*self._positions, *flat], place, Balls(dict(place)))
             return entries[:m], [entries[m + i * n : m + (i + 1) * n] for i in range(m)]
 
+        taken, limit = range(m) if chosen is None else chosen, 0.0
         for _ in range(_NEWTON):
             residual, rows = at(values)
-            table = [[*row, r] for row, r in zip(rows, residual, strict=True)]
+            table = [[*rows[i], residual[i]] for i in taken]
             done = eliminated(table, range(n), arb(2) ** ALMOST)
             worst = max(float(abs(arb(x)).upper()) for x in residual)
-            if not worst < 1e6:
+            limit = limit or 1e6 * max(1.0, worst)
+            if not worst < limit:
                 raise ZeroDivisionError("Newton's iteration leaves")
             values = dict(values)
             for i, column in done.pivots:
@@ -460,7 +508,7 @@ class Manifold:
             if worst < 2.0 ** (WIDTH * 2):
                 break
         unknown = [names[column] for column in done.columns]
-        independent = [i for i, _ in done.pivots]
+        independent = [taken[i] for i, _ in done.pivots]
         return self._proved(values, unknown, independent, at, [names.index(name) for name in unknown])
 
     def _proved(
@@ -490,6 +538,49 @@ class Manifold:
         if not all(_is_narrow(x) for row in (residual, *slopes) for x in row):  # sin of 1e400 may be anything
             raise ZeroDivisionError("too wide to tell whether the other rows hold there")
         return root
+
+
+#: A row or a way by places; mechanisms have few in a row.
+Sparse = dict[int, arb]
+
+
+def _shortest(rows: Sequence[Sparse], right: Sequence[arb], faint: float) -> tuple[list[int], Sparse]:
+    """Rows that are independent, the most independent one next, and the shortest x with row . x = right for these.
+
+    Rows are measured by their lengths; one of which others leave less than ``faint`` is left out.
+    """
+    lengths = [_length(row) for row in rows]
+    left = {i: {k: x / lengths[i] for k, x in row.items()} for i, row in enumerate(rows) if is_certain(lengths[i])}
+    sizes, rest = {i: arb(1) for i in left}, {i: right[i] / lengths[i] for i in left}
+    independent: list[int] = []
+    shortest: Sparse = {}
+    while left:
+        i = max(left, key=lambda k: float(sizes[k]))
+        row, size, part = left.pop(i), sizes.pop(i), rest.pop(i)
+        if size < faint:
+            break
+        independent.append(i)
+        direction, part = {k: (x / size).mid() for k, x in row.items()}, (part / size).mid()
+        _add(shortest, part, direction)
+        for k, other in left.items():
+            common = _product(other, direction)
+            if common != 0:
+                _add(other, -common, direction)
+                rest[k], sizes[k] = (rest[k] - common * part).mid(), _length(other)
+    return independent, shortest
+
+
+def _add(row: Sparse, factor: arb, other: Sparse) -> None:
+    for k, x in other.items():
+        row[k] = (row.get(k, arb(0)) + factor * x).mid()
+
+
+def _product(x: Sparse, y: Sparse) -> arb:
+    return arb(sum((x[k] * y[k] for k in x.keys() & y.keys()), arb(0)).mid())
+
+
+def _length(x: Sparse) -> arb:
+    return arb(_product(x, x).sqrt().mid())
 
 
 def _is_narrow(x: Any) -> bool:

@@ -132,11 +132,25 @@ def conserves_energy(dynamics: Dynamics) -> bool:
     return unmoved and not dynamics.energy_power.outputs
 
 
-def cyclic_coordinates(dynamics: Dynamics) -> tuple[str, ...]:
-    """Coordinates that the equations do not know, as their program shows."""
+def _cyclic_coordinates(dynamics: Dynamics, state: Any, sizes: Any, period: float) -> tuple[str, ...]:
+    """Coordinates that the equations do not know, as their program shows or, where they cancel, the rates do."""
     code = dynamics.right_hand_side
     used = {code.program.instructions[number].payload for number in code.program.live(code.outputs)}
-    return tuple(name for name in dynamics.system.coordinates if name not in used)
+    names = dynamics.system.coordinates
+    return tuple(name for name in names if name not in used or not _depend_on(dynamics, name, state, sizes, period))
+
+
+def _depend_on(dynamics: Dynamics, name: str, state: Any, sizes: Any, period: float) -> bool:
+    """Whether the rates at a state change with a coordinate alone."""
+    rates, place = compiled_kernel(dynamics, "right_hand_side"), dynamics.system.coordinates.index(name)
+    now = rates(np.concatenate(([0.0], state)))
+    for shift in np.linspace(0.1, 2.0, SAMPLES):
+        beside = np.array(state, float)
+        beside[place] += shift * sizes[place]
+        apart = np.abs(rates(np.concatenate(([0.0], beside))) - now)
+        if not np.all(apart <= REPEATED * (sizes / period + np.abs(now))):
+            return True
+    return False
 
 
 def periodic_orbit(
@@ -154,7 +168,9 @@ def periodic_orbit(
     rates, sizes = compiled_kernel(dynamics, "right_hand_side"), about(dynamics, 0.0, guess.state).sizes[:, 0]
     if known_time:
         _require_repetition(dynamics, rates, guess, sizes)
-    _require_ignored(dynamics, rates, guess, sizes)
+    for name in guess.shifted:
+        if _depend_on(dynamics, name, guess.state, sizes, guess.period):
+            raise NotFound(Message("the motion depends on [[name]], which has to come back", name=name))
     energy = _Energy(dynamics, sizes)
     shifted = np.array([name in guess.shifted for name in names])
     search = _Search(flow, turns, shifted, energy, energy(guess.state) if guess.keep_energy else None)
@@ -196,19 +212,6 @@ def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess, sizes: Any
             apart = np.abs(then - now)  # compared in vain where one of them is no number
             if np.any(apart > REPEATED * (sizes / guess.period + np.abs(now))):
                 raise NotFound(_unrepeated(dynamics, f"{guess.period:.15g}"))
-
-
-def _require_ignored(dynamics: Dynamics, rates: Any, guess: Guess, sizes: Any) -> None:
-    """Raises NotFound where the rates depend on a coordinate that is to come back changed."""
-    state = np.asarray(guess.state, float)
-    now = rates(np.concatenate(([0.0], state)))
-    for name in guess.shifted:
-        for shift in np.linspace(0.1, 2.0, SAMPLES):
-            beside = state.copy()
-            beside[dynamics.system.coordinates.index(name)] += shift * sizes[dynamics.system.coordinates.index(name)]
-            apart = np.abs(rates(np.concatenate(([0.0], beside))) - now)
-            if np.any(apart > REPEATED * (sizes / guess.period + np.abs(now))):
-                raise NotFound(Message("the motion depends on [[name]], which has to come back", name=name))
 
 
 def _unrepeated(dynamics: Dynamics, period: str) -> Message:
@@ -380,7 +383,7 @@ def _orbit(
     )  # in parts of the sizes
     multipliers = _sorted(np.linalg.eigvals(phi))
     uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
-    reasons, count = _trivial(dynamics, state, phi, path if free else None, basis, energy)
+    reasons, count = _trivial(dynamics, state, period, phi, path if free else None, basis, energy)
     verified, verifier = _verified(dynamics, state, period, turns, scale)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     det = float(np.linalg.det(phi))
@@ -420,7 +423,7 @@ def _distance(a: Any, b: Any) -> float:
 
 
 def _trivial(
-    dynamics: Dynamics, state: Any, phi: Any, path: Any, basis: Any, energy: _Energy
+    dynamics: Dynamics, state: Any, period: float, phi: Any, path: Any, basis: Any, energy: _Energy
 ) -> tuple[tuple[Trivial, ...], int]:
     """The reasons for multipliers 1 that hold at this Phi, and for how many of them they stand.
 
@@ -433,9 +436,9 @@ def _trivial(
     right: list[Any] = []
     left: list[Any] = []
     reasons = []
-    cyclic = cyclic_coordinates(dynamics)
     candidates: list[tuple[str, Any, bool]] = []
     scale = energy.scale(state)
+    cyclic = _cyclic_coordinates(dynamics, state, scale, period)
     if path is not None:
         candidates.append((Message("the motion itself: the equations do not depend on the time"), path, True))
     if path is not None and conserves_energy(dynamics):

@@ -29,6 +29,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Method, Setting, compiled_kernel
+from mbsym.numerics.methods.magnitudes import NOISE, about, variables
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.simulate import Trajectory, integrated
 
@@ -187,12 +188,27 @@ def usual_sizes(dynamics: Dynamics, times: Any, states: Any, kinetic: float) -> 
     return np.where(np.isfinite(usual), usual, 0.0)
 
 
+def kinetic_rounding(dynamics: Dynamics, time: float, state: Any) -> float:
+    """Kinetic energy of velocities that are roundings beside those that the scene gives a state.
+
+    Rest that rows hold is moved by what forces leave of each other, and each step is led back to the rows: energies do
+    not tell how far.  0 without constraints.
+    """
+    if dynamics.constraints is None:
+        return 0.0
+    state, kinds = np.asarray(state, dtype=float), variables(dynamics)
+    weights = kinds.weights(np.array([time]), state[:, None])[:, 0]
+    return float(np.sum(NOISE * weights * about(dynamics, time, state).sizes[kinds.velocities, 0]) ** 2 / 2)
+
+
 def sizes_of_scene(dynamics: Dynamics, times: Any, states: Any) -> Any:
-    """``usual_sizes`` of a motion whose states (2n, m) lie close to each other."""
+    """``usual_sizes`` of a motion whose states (2n, m) lie close to each other; of rest those of the scene."""
     with np.errstate(all="ignore"):
         kinetic = compiled_kernel(dynamics, "relative_energy")(np.vstack([times, states]))[1]
     largest = float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
     try:
+        if largest <= kinetic_rounding(dynamics, float(times[0]), states[:, 0]):
+            return about(dynamics, float(times[0]), states[:, 0]).sizes[:, 0]
         return usual_sizes(dynamics, times, states, largest)
     except Failure:
         return np.zeros(len(states))

@@ -31,7 +31,7 @@ from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.speed_states import completed
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.admissibility import known_values
-from mbsym.model.constraints import is_holonomic, kind_name
+from mbsym.model.constraints import Rolling, is_holonomic, kind_name
 from mbsym.model.system import System, velocity_name
 from mbsym.problems.constraints.integrability import Field, by_program, integrability, is_exact_by_itself, undecided
 from mbsym.problems.constraints.result import Constraints, Demanded, Integrability, Redundant, Solved
@@ -55,7 +55,7 @@ def faults(scene: Scene) -> tuple[Fault, ...]:
     """The faults alone: what is said of a description before anything is derived from it."""
     try:
         with ctx.workprec(PRECISION):
-            _Analysis(scene).pivots()
+            _Analysis(scene).look_for_faults()
     except Unsound as reason:
         return reason.faults
     except Failure:  # nothing is known to be wrong
@@ -158,8 +158,14 @@ class _Analysis:
         self.programs = constrained_programs(self.system, self.ring, kept_rows(self.rows))
         self.manifold = Manifold(self.system, self.ring, self.programs)
 
-    def pivots(self) -> tuple[_Points, list[int], Pivots]:
-        """Points of the manifold, the independent rows, and how they are solved."""
+    def look_for_faults(self) -> None:
+        """Raises Unsound with those there are: how rows are solved matters where the description says it."""
+        points, independent = self.independent_rows()
+        if self.system.dependent:
+            self._chosen(independent, points)
+
+    def independent_rows(self) -> tuple[_Points, list[int]]:
+        """Points of the manifold, and rows that are independent there."""
         impossible = contradiction(self.ring, self.rows)
         if impossible:
             message = "these constraints contradict one another: no configuration keeps them all"
@@ -171,12 +177,40 @@ class _Analysis:
         rank = max(elimination.rank for elimination in ranked)
         # Where it is lower a point is singular, or on another branch.
         points = points.at([k for k, elimination in enumerate(ranked) if elimination.rank == rank])
+        self._check_slopes(points)
         # A row that vanishes at a point by chance is not left out for a later one.
-        independent = min(sorted(i for i, _ in x.pivots) for x in ranked if x.rank == rank)
+        generic = min((x for x in ranked if x.rank == rank), key=lambda x: sorted(i for i, _ in x.pivots))
+        independent = sorted(i for i, _ in (self._on_the_motion(points, rank) or generic).pivots)
         self._check_velocities(points, independent)
         self._check_freedom(independent)
-        jacobian = [row.partials for row in self.rows]
-        return points, independent, self._chosen(jacobian, independent, points)
+        return points, independent
+
+    def _on_the_motion(self, points: _Points, rank: int) -> Eliminated | None:
+        """Rows that are independent on the motion, where as many are as elsewhere: it may be where others are not."""
+        for place in places(self.scene):
+            with suppress(*NOT_THERE, Failure):
+                flat = [self.ring.substitute(x, place) for row in self.rows for x in row.partials]
+                there = points.at([0]).values(flat)[0]
+                ranked = self._ranked([there[i : i + self.n] for i in range(0, len(there), self.n)])
+                if ranked.rank == rank:
+                    return ranked
+        return None
+
+    def _check_slopes(self, points: _Points) -> None:
+        """Raises Unsound where a row ties no velocity wherever it holds, as a square does, and motions leave it."""
+        evaluate = self.programs.tree.program.evaluate
+        bent = [evaluate(self.programs.acceleration, x.state.values, x.state.numbers) for x in points.states]
+        jacobians = points.jacobians()
+        loose = [
+            row.name
+            for i, row in enumerate(self.rows)
+            if not any(is_certain(x) for jacobian in jacobians for x in jacobian[i])
+            and any(is_certain(rates[i]) for rates in bent)
+        ]
+        if loose:
+            message = "wherever this constraint holds it ties no velocity, as a square does"
+            hint = "write what is squared: x = y for (x - y)**2 = 0"
+            raise Unsound([Fault("square-constraint", message, (name,), hint) for name in loose])
 
     def _check_freedom(self, independent: Sequence[int]) -> None:
         """Raises Unsound where nothing can move, and nothing is moved either."""
@@ -184,13 +218,18 @@ class _Analysis:
         if len(independent) < self.n or any(self.ring.substitute(row.velocity, still) for row in self.rows):
             return
         message = "the constraints leave no freedom: nothing can move"
-        hint = "leave one of them out; the contact of 'rolling' wants 'axes' that do not spin with the wheel"
+        hint = "leave one of them out"
+        if any(isinstance(constraint, Rolling) for constraint in self.system.constraints):
+            hint = "leave one of them out; the contact of 'rolling' wants 'axes' that do not spin with the wheel"
         raise Unsound([Fault("no-freedom", message, tuple(self.rows[i].name for i in independent), hint)])
 
-    def _chosen(self, jacobian: Sequence[Sequence[Polynomial]], independent: list[int], points: _Points) -> Pivots:
+    def _chosen(self, independent: list[int], points: _Points) -> Pivots:
+        """How the rows are solved."""
+        jacobian = [row.partials for row in self.rows]
         columns, required = self._columns(len(independent))
         try:
-            return choose(self.ring, jacobian, independent, columns, regular_at(points.jacobians()), required)
+            regular = regular_at(points.jacobians())
+            return choose(self.ring, jacobian, independent, columns, regular, required, places(self.scene))
         except Constrained as reason:
             if not self.system.dependent:
                 raise
@@ -208,7 +247,8 @@ class _Analysis:
         return Message("for example dependent: [[[names]]]", names=names)
 
     def result(self) -> Constraints:
-        points, independent, pivots = self.pivots()
+        points, independent = self.independent_rows()
+        pivots = self._chosen(independent, points)
         jacobian = [row.partials for row in self.rows]
         still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
         shifts = [self.ring.substitute(row.velocity, still) for row in self.rows]

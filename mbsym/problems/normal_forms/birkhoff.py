@@ -21,11 +21,12 @@ from typing import Any
 
 from flint import arb
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated, flow
-from mbsym.problems.normal_forms.exact import even_part, exact_values, over_tower, rational_root, rational_squares
+from mbsym.problems.normal_forms.exact import even_part, exact_values, over_tower, rational_squares
 from mbsym.problems.normal_forms.expansion import Expansion
 
 
@@ -215,5 +216,5 @@ def _in_units_of_one(
     own = [next((x for x in squares if (sizes[j] * sizes[j]).contains(x)), None) for j in support]
     if any(x is None for x in own):
         return None
-    ratios = [rational_root(x / own[0]) for x in own if x is not None and own[0] is not None]
+    ratios = [rationals.square_root(x / own[0]) for x in own if x is not None and own[0] is not None]
     return None if None in ratios or own[0] is None else (tower.element(own[0]), [x for x in ratios if x is not None])

@@ -12,6 +12,7 @@ from typing import Any
 
 from flint import Ordering, arb, arb_poly, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, SingularPoint, message_of
@@ -55,7 +56,7 @@ def exact_values(expansion: Expansion, values: Mapping[str, Any]) -> tuple[Tower
         whole = fmpq(1)
         for x in some:
             whole = fmpq(0) if x is None else whole * x
-        if whole <= 0 or rational_root(whole) is not None:
+        if whole <= 0 or rationals.square_root(whole) is not None:
             return None
     return tower, exact
 
@@ -209,12 +210,6 @@ def _composed_sum(p: tuple[fmpq, ...], q: tuple[fmpq, ...]) -> fmpq_poly:
 def composed_sum(p: fmpq_poly, q: fmpq_poly) -> fmpq_poly:
     """The polynomial whose roots are the sums of a root of p and one of q: Res_y(p(y), q(x - y))."""
     return _composed_sum(tuple(p.coeffs()), tuple(q.coeffs()))
-
-
-def rational_root(x: fmpq) -> fmpq | None:
-    """The square root, if that is rational."""
-    top, bottom = x.p.isqrt(), x.q.isqrt()
-    return fmpq(top, bottom) if x >= 0 and top * top == x.p and bottom * bottom == x.q else None
 
 
 def rational_squares(tower: Tower | None, coefficients: Sequence[Element]) -> list[fmpq] | None:

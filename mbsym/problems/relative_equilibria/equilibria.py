@@ -188,6 +188,12 @@ def _listed(
                 "which is to be seen in other coordinates"
             )
         )
+    if other := [x for x in listed if x.verdict.because(Because.OTHER_BRANCH)]:
+        text = (
+            "[[count]]: on other branches of the constraints, where more of them are independent, and nothing is said "
+            "of stability"
+        )
+        remarks.append(Message(text, count=Counted(len(other), "relative equilibrium", "relative equilibria")))
     if lost := [x for x in listed if x.verdict.because(Because.RANK_LOST)]:
         text = (
             "[[count]]: there the constraints are singular (links in line, branches of motion that meet), and nothing "

@@ -202,7 +202,7 @@ class Listing(Conditions):
         """The verdict of problem 6 at a place."""
         here, elsewhere = self.ranks
         if elsewhere is not None and here != elsewhere and not self.case.whole:
-            return undecided(Because.RANK_LOST, here, elsewhere)
+            return undecided(Because.RANK_LOST if here < elsewhere else Because.OTHER_BRANCH, here, elsewhere)
         if isinstance(self.rest, Orbits):
             return self.rest.first_approximation.verdict(place)
         if isinstance(self._linear, str):

@@ -19,6 +19,7 @@ from typing import Any
 
 from flint import ctx, fmpq, fmpq_mat, fmpq_poly, fmpz
 
+from mbsym.algebra import rationals
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Limits, context, solve
@@ -395,7 +396,7 @@ def _angles(
         if not length > 0:
             return None
         length = length.sqrt()
-    root = _rational_root(square)
+    root = None if square.degree() > 0 else rationals.square_root(square[0])
     sets = []
     for sign in (1, -1):
         exact = {index: inner}
@@ -429,11 +430,3 @@ def _simple(cosines: Cosines, known: Mapping[tuple[int, int], Any]) -> Iterator[
             ((monomial, coefficient),) = terms
             if coefficient in (1, -1) and all(e in (0, 1) for e in monomial):
                 yield tuple(i for i, e in enumerate(monomial) if e), value * coefficient
-
-
-def _rational_root(x: Any) -> fmpq | None:
-    """The square root of a positive rational number in the field, where it is rational."""
-    if x.degree() > 0:
-        return None
-    p, q = (fmpz(y).isqrt() for y in (x[0].p, x[0].q))
-    return fmpq(p, q) if fmpq(p * p, q * q) == x[0] else None

@@ -124,6 +124,9 @@ class Place:
             if g.kind == "reciprocal":
                 inner = self.residue(g.argument)
                 value = None if inner is None or inner == 0 else inverse_modulo(inner, self.modulus)
+            elif g.kind == "root" and (inner := self.residue(g.argument)) is not None and inner.degree() == 0:
+                root = rationals.square_root(inner[0])
+                value = None if root is None else fmpq_poly([root])
             self._exact[index] = value
         return self._exact[index]
 

@@ -228,10 +228,10 @@ class Phase:
 class Oscillation:
     """x_i = sum_n eps^n series[i][n](T), n <= order, in one phase T or several, which turn independently.
 
-    Where an amplitude is free it is the leading variable's value at T = 0 in all orders, where it is ``DETERMINED`` its
-    first approximation; of several phases all are free, and each is the whole coefficient of cos T.  ``constants``:
-    variables that keep their value at eps = 0, with it; it is theirs at T = 0 in all orders.  ``names`` are the
-    variables in the order of ``series``; ``powers``: x stands for x eps^power.
+    Where an amplitude is free it is the leading variable's value at T = 0 in all orders, less ``centre``, about which
+    it oscillates; where it is ``DETERMINED`` its first approximation; of several phases all are free, and each is the
+    whole coefficient of cos T.  ``constants``: variables that keep their value at eps = 0, with it; it is theirs at
+    T = 0 in all orders.  ``names`` are the variables in the order of ``series``; ``powers``: x stands for x eps^power.
     ``others``: variables and the square of a frequency that is left out; ``damped``, ``with_zero``, ``not_known``:
     variables with roots that are surely not imaginary, zero, or not found.
     ``residuals``: the order of eps that is left in each equation when all this is put into it (None: nothing).
@@ -274,6 +274,11 @@ class Oscillation:
     @property
     def amplitude(self) -> Element:
         return self.phases[0].amplitude
+
+    @property
+    def centre(self) -> Element:
+        """The mean of the leading variable where eps is zero."""
+        return self.series[self.names.index(self.leading)][0].waves.get(0, (self.tower.zero,))[0]
 
     @property
     def verified(self) -> bool:

@@ -193,6 +193,9 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "coordinates are these angles here."
     ),
     Because.APART: "This is about [[1]]: equations of motion that know no other coordinates are judged by themselves.",
+    Because.WHILE_OTHERS_REST: (
+        "This is about motions of [[1]] while all other coordinates rest: these are motions, too."
+    ),
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",
@@ -231,6 +234,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.MASS_SINGULAR: "The mass matrix is singular.",
     Because.ORDER_LOWER: "The mass matrix is singular, so the order of the equations is lower.",
     Because.VARIES: "The first approximation varies with [[1]]; nothing is claimed.",
+    Because.OTHER_BRANCH: "This is another branch of the constraints: [[1]] of them are independent there, and [[2]] "
+    "where the description begins.",
     Because.RANK_LOST: "The constraints are singular there: [[1]] of them are independent, [[2]] near by.",
     Because.NOT_THE_VALUE: "The motion does not exist there: [[1]] has another value.",
     Because.MOTION_NOT_THERE: "The motion does not exist there: [[1]] = [[2]], not 0.",

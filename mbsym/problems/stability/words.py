@@ -176,6 +176,7 @@ class Because(Enum):
     DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
     OTHER_ANGLES = auto()  # (body, axes, angles)
     APART = auto()  # (coordinates)
+    WHILE_OTHERS_REST = auto()  # (coordinate)
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open
@@ -201,6 +202,7 @@ class Because(Enum):
     ORDER_LOWER = auto()
     VARIES = auto()  # (with what)
     RANK_LOST = auto()  # (rank there, rank near it)
+    OTHER_BRANCH = auto()  # (rank there, lower rank elsewhere)
     NOT_THE_VALUE = auto()  # (of which parameter)
     MOTION_NOT_THERE = auto()  # (condition, value)
     MOTION_OPEN = auto()  # (condition)

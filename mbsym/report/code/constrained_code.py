@@ -9,8 +9,9 @@ factors of M and of J M^-1 J^T), and as M, f, J and gamma for languages that sol
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -19,9 +20,11 @@ from mbsym.algebra.program import Node, Program
 from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.stages import Unavailable
 from mbsym.mechanics.constraints.dependence import counted_anew
-from mbsym.mechanics.constraints.dynamics import Chosen, ConstrainedDynamics, constrained_dynamics
+from mbsym.mechanics.constraints.dynamics import Chosen, ConstrainedDynamics, Kept, constrained_dynamics
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.model.system import System
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.report.code.functions import Function, Functions
 
 if TYPE_CHECKING:
@@ -99,12 +102,24 @@ def _tied(analysis: Analysis) -> Tied:
         order, constraints.independent, constraints.dependent_sets, constraints.dependent_positions
     )
     positions = sum(code.position[i] is not None for i in rows)
-    chosen = Chosen(tuple((code.names[i].constraint, code.names[i].component) for i in rows), *sets)
+    single = any(not code.names[rows[k]].component for one in sets[0] for k in one.rows)
+    usual = _usual(analysis.system) if single else {}
+    kept = tuple((code.names[i].constraint, code.names[i].component) for i in rows)
+    chosen = Chosen(kept, sets[0], sets[1], usual)
     tied = Tied(code, tuple(rows), positions, constraints.velocity_rank, constraints.position_rank, chosen)
     try:
         return replace(tied, dynamics=constrained_dynamics(analysis.system, analysis.ring, chosen))
     except Failure as reason:
         return replace(tied, no_dynamics=str(reason))
+
+
+def _usual(system: System) -> Mapping[Kept, Fraction]:
+    """What single rows are measured by at the values of the description; nothing where these are not known."""
+    try:
+        constraints = Dynamics(scenario(system)).constraints
+        return {} if constraints is None else constraints.usual
+    except (Failure, Incomplete):
+        return {}
 
 
 @dataclass(frozen=True)
@@ -113,10 +128,12 @@ class TiedCode:
 
     ``rows`` are their labels, ``positions`` how many of them, the first ones, are on positions; ``rank`` and
     ``position_rank`` how many are independent, of all and of those; ``places`` the entries
-    of J that need not be zero; ``given`` see ``given_of``, ``stays`` names what it flags.
+    of J that need not be zero; ``given`` see ``given_of``, ``stays`` names what it flags.  ``measures``: by what the
+    square of each row is measured, of the ``squares`` of all.
     """
 
     rows: tuple[str, ...]
+    measures: tuple[str, ...]
     positions: int
     rank: int
     position_rank: int
@@ -152,6 +169,7 @@ def tied_code(analysis: Analysis, writer: Functions) -> TiedCode | None:
     fixed = given_of(system)
     return TiedCode(
         tied.labels,
+        _measures(tied),
         tied.positions,
         tied.rank,
         tied.position_rank,
@@ -162,6 +180,16 @@ def tied_code(analysis: Analysis, writer: Functions) -> TiedCode | None:
         places,
         fixed,
         tuple(name for name, stays in zip((*system.coordinates, *system.velocities), fixed, strict=True) if stays),
+    )
+
+
+def _measures(tied: Tied) -> tuple[str, ...]:
+    """``measures`` of dependence in the syntax of Python and C."""
+    names, usual = [tied.code.names[i] for i in tied.rows], tied.chosen.usual
+    kinds = [" + ".join(f"squares[{k}]" for k, x in enumerate(names) if x.kind == name.kind) for name in names]
+    return tuple(
+        f"squares[{i}] + {float(usual[key])!r}" if (key := (name.constraint, name.component)) in usual else kinds[i]
+        for i, name in enumerate(names)
     )
 
 

@@ -203,8 +203,8 @@ def _integrable(integrability: Integrability, dimension: int) -> Iterator[Said]:
         )
     elif integrability.word == "partly":
         yield say(
-            "The velocity constraints are integrable in part ([[sure]]): they keep [[kept]] further relations between "
-            "the coordinates; the fields and their Lie brackets span [[growth]] dimensions.",
+            "The velocity constraints are integrable in part ([[sure]]): they keep further relations between the "
+            "coordinates, their number: [[kept]]; the fields and their Lie brackets span [[growth]] dimensions.",
             sure=sure,
             kept=str(integrability.kept),
             growth=growth,

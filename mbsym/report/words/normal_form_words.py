@@ -110,7 +110,7 @@ def sentences(normal_forms: NormalForms) -> Iterator[Said]:
         )
     if normal_forms.first is not None:
         yield say(
-            "At the given values problem 6 says without terms of higher order: [[word]].",
+            "At the given values problem 6 says, without normal forms and centre manifolds: [[word]].",
             word=worded(normal_forms.first.value),
         )
     if normal_forms.at_values is not None:

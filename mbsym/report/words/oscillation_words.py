@@ -46,6 +46,7 @@ _SEVERAL = (
     "functions of the phases, and the rates of these. The coefficient of the power $k$ of [[small]] has the index "
     "$(k)$."
 )
+_DEVIATING = "[[names]]: here deviations from the unperturbed motion."
 _ALL_FREE = (
     "Secular terms are removed up to this order with any amplitudes. Here [[amplitudes]] are what stands before the "
     "cosines of the phases in [[leading]], where their sines do not stand."
@@ -57,6 +58,10 @@ _QUASIPERIODIC = (
 _FREE = (
     "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]], the value of [[leading]] "
     "at the phase 0, where it has no term [[sine]]."
+)
+_FREE_ABOUT = (
+    "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]]: at the phase 0, where "
+    "[[leading]] has no term [[sine]], it is [[value]]."
 )
 _FORMAL = (
     "Whether some remain in higher orders, so that there is no such periodic motion, is not looked at: it is periodic "
@@ -144,6 +149,8 @@ _NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym 
 def opening(solution: Oscillating) -> Iterator[Said]:
     """What is expanded in what."""
     oscillation = solution.oscillation
+    if solution.deviating:
+        yield say(_DEVIATING, names=named(solution.deviating))
     yield from scaled(oscillation.powers, oscillation.small)
     yield Said(_SERIES if len(solution.phases) == 1 else _SEVERAL, _values(solution))
 
@@ -233,7 +240,11 @@ def sentences(solution: Oscillating) -> Iterator[Said]:
         if least or solution.taylor:
             yield Said(_QUASIPERIODIC)
     elif series.kind is Amplitude.FREE:
-        yield say(_FREE, **values, amplitude=solution.formula(series.amplitude), sine=_wave(solution, False))
+        gaps: Gaps = {**values, "amplitude": solution.formula(series.amplitude), "sine": _wave(solution, False)}
+        if series.centre.is_zero():
+            yield Said(_FREE, gaps)
+        else:
+            yield Said(_FREE_ABOUT, gaps | {"value": solution.formula(series.amplitude + series.centre)})
         if least or solution.taylor:  # else it is a solution
             yield Said(_FORMAL)
     else:
@@ -263,7 +274,7 @@ def sentences(solution: Oscillating) -> Iterator[Said]:
     for divisor in solution.resonances:
         zeros = (Relation(numerator(solution, x), "=", 0) for x in divisor.parts)
         turns = ", ".join(map(str, multiples(divisor.harmonic, len(series.phases))))
-        gaps: Gaps = {"harmonic": turns, "order": str(divisor.order), "names": named(divisor.variables)}
+        gaps = {"harmonic": turns, "order": str(divisor.order), "names": named(divisor.variables)}
         gaps |= dict(zip(("condition", "other"), zeros, strict=False))
         yield Said(_RESONANCE if divisor.damping is None else _BOTH, gaps)
     for group, other in series.others:
@@ -281,11 +292,11 @@ def _values(solution: Oscillating) -> Gaps:
 
 
 def _wave(solution: Oscillating, whole: bool) -> Formula:
-    """The amplitude times the cosine of the phase; or its sine."""
-    zero, element = solution.oscillation.tower.zero, solution.oscillation.tower.one
-    return solution.wave(
-        Harmonics(solution.oscillation.tower, {1: (solution.oscillation.amplitude, zero) if whole else (zero, element)})
-    )
+    """The amplitude times the cosine of the phase, about its centre; or its sine."""
+    series = solution.oscillation
+    zero, one = series.tower.zero, series.tower.one
+    waves = {0: (series.centre, zero), 1: (series.amplitude, zero)} if whole else {1: (zero, one)}
+    return solution.wave(Harmonics(series.tower, waves))
 
 
 def numerator(solution: Oscillating, value: Element) -> Formula:

@@ -96,7 +96,9 @@ class NormalForms(Part, frozen=True):
         From("taken_in"),
     ]
     first_approximation: Annotated[
-        str | None, "the verdict of problem 6 at the given values, without terms of higher order", From("first")
+        str | None,
+        "the verdict of problem 6 at the given values, without normal forms and centre manifolds",
+        From("first"),
     ]
     at_values: Annotated[NormalFormAtValues | None, "what is decided at the given values; null without numbers"]
     two_frequencies: Annotated[TwoFrequencies | None, "Hamiltonian systems of two frequencies, in parameters"]
