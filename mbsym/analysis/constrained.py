@@ -1,10 +1,11 @@
-"""Constraints in the pipeline: their analysis, problem 3 with them, and their second routes.
+"""Equations and integrals in the pipeline, with constraints or without; what constraints are, and their second routes.
 
 The modules that know how are imported when a system has constraints; most have none.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -27,7 +28,7 @@ from mbsym.expressions.tree import (
 from mbsym.model.constraints import Relation
 from mbsym.model.substitution import told_by, without_explicit_relations
 from mbsym.model.system import Prescribed
-from mbsym.problems import equations
+from mbsym.problems import equations, perturbation
 from mbsym.problems.checks import Check
 from mbsym.problems.equations import Equations
 
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+    from mbsym.mechanics.states import Oracles
     from mbsym.model.system import System
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.integrals import Integral
@@ -142,21 +144,28 @@ def constraints_in_coordinates(analysis: Analysis) -> Constraints:
 
 
 def equations_of(analysis: Analysis) -> Equations:
-    """The equations of the open tree with the constraints, and those without multipliers if they are not too long."""
-    from mbsym.problems import in_speeds
-    from mbsym.problems.constraints import embedded_equations
+    """Lagrange's equations or, in speeds, Kane's.
 
-    constraints, form = analysis.constraints, analysis.form
-    rows = [x.polynomial for x in (*constraints.velocity, *(f for f in constraints.position if f is not None))]
+    With constraints these are the equations of the open tree, and beside them those without multipliers if they are not
+    too long.
+    """
+    tied = analysis.constraints if analysis.system.constraints else None
     if analysis.system.speeds:
-        tree: Equations = in_speeds.equations(form, analysis.scene, rows)
+        from mbsym.problems import in_speeds
+
+        rows = [] if tied is None else [*tied.velocity, *(f for f in tied.position if f is not None)]
+        tree: Equations = in_speeds.equations(analysis.form, analysis.scene, [x.polynomial for x in rows])
     else:
         tree = equations.equations(analysis.scene, analysis.energy)
+    if tied is None:
+        return tree
+    from mbsym.problems.constraints import embedded_equations
+
     try:
-        embedded = embedded_equations(form, tree, constraints)
+        embedded = embedded_equations(analysis.form, tree, tied)
     except NoClosedForm:
         embedded = None
-    return replace(tree, constraints=constraints, embedded=embedded)
+    return replace(tree, constraints=tied, embedded=embedded)
 
 
 def programs_of(analysis: Analysis) -> ConstrainedPrograms:
@@ -192,15 +201,21 @@ def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
     """What the motion keeps, with constraints or in speeds."""
     from mbsym.problems.constraints.integrals import integrals
 
-    programs = programs_of(analysis) if analysis.system.constraints else None
-    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, programs)
+    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, _tied(analysis)[1])
 
 
-def integrals_check(analysis: Analysis, integrals: tuple[Integral, ...]) -> Check:
-    """Their rates along the motion with multipliers."""
+def integrals_check(analysis: Analysis, integrals: Sequence[Integral], truth: Oracles | None = None) -> Check:
+    """Their rates along the motion: at states of ``truth``, or such that keep the constraints."""
+    if not analysis.system.constraints:
+        return perturbation.check_integrals(truth or analysis.oracles, analysis.programs, integrals)
     from mbsym.problems.constraints.checks import check_integrals
 
     return check_integrals(analysis.form, integrals, analysis.constraints, programs_of(analysis))
+
+
+def _tied(analysis: Analysis) -> tuple[Constraints, ConstrainedPrograms] | tuple[None, None]:
+    """The constraints and their program, where there are some."""
+    return (analysis.constraints, programs_of(analysis)) if analysis.system.constraints else (None, None)
 
 
 def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:
@@ -209,9 +224,7 @@ def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:
         return ()
     from mbsym.problems.reactions import reactions
 
-    if not analysis.system.constraints:
-        return reactions(analysis.scene, None)
-    return reactions(analysis.scene, analysis.constraints, programs_of(analysis))
+    return reactions(analysis.scene, *_tied(analysis))
 
 
 def reactions_check(analysis: Analysis) -> Check | None:
@@ -221,6 +234,4 @@ def reactions_check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.reactions import check_reactions
 
-    if analysis.system.constraints:
-        return check_reactions(analysis.oracles, reactions, analysis.constraints, programs_of(analysis))
-    return check_reactions(analysis.oracles, reactions, None, None)
+    return check_reactions(analysis.oracles, reactions, *_tied(analysis))

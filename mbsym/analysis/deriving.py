@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.failures import NOT_THERE, Failure, SingularPoint
 from mbsym.algebra.matrices import determinant
 from mbsym.analysis import approximation, constrained, given, higher
 from mbsym.analysis.judge import Judge
@@ -20,11 +21,10 @@ from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.substitution import with_free_rates
-from mbsym.problems import dissipation, energy, equations, equilibrium, integrals, stability
+from mbsym.problems import dissipation, energy, equilibrium, integrals, stability
 from mbsym.problems.checks import EXACT, NUMERICAL
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
-from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.stability import Stability
@@ -48,17 +48,6 @@ if TYPE_CHECKING:
 def energy_of(analysis: Analysis) -> Energy:
     """T, U and their parts, in speeds where the system has some."""
     return energy.energy(analysis.scene, analysis.form if analysis.system.speeds else None)
-
-
-def equations_of(analysis: Analysis) -> Equations:
-    """The equations of motion: with constraints, in speeds, or Lagrange's."""
-    if analysis.system.constraints:
-        return constrained.equations_of(analysis)
-    if not analysis.system.speeds:
-        return equations.equations(analysis.scene, analysis.energy)
-    from mbsym.problems import in_speeds
-
-    return in_speeds.equations(analysis.form, analysis.scene)
 
 
 def stability_of(analysis: Analysis) -> Stability:
@@ -247,10 +236,10 @@ def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
     position = oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded)
     rests = bool(position) and ring.reduce(at[ring.index("velocity", position)]).is_zero()
-    return {
-        "oscillating": position if rests else "",
-        "steady": steady_motions(ring, embedded, names, about.idle, at, analysis.signs),
-    }
+    steady = None
+    with suppress(SingularPoint):  # independent velocities may be singular on the motion
+        steady = steady_motions(ring, embedded, names, about.idle, at, analysis.signs)
+    return {"oscillating": position if rests else "", "steady": steady}
 
 
 #: So many choices of independent velocities are tried.

@@ -248,7 +248,7 @@ class Analysis(Stages):
     kinematics = Problem[Kinematics](lambda a: kinematics.kinematics(a.scene), ("kinematics",))
     energy = Problem[Energy](deriving.energy_of, ("energy",))
     equations = Problem[Equations](
-        deriving.equations_of,
+        constrained.equations_of,
         ("equations of motion", "constraints", "constrained motion"),
     )
     constraints: Derived[Analysis, Constraints] = Derived(constrained.constraints_of, ("constraints",))

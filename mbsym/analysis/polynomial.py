@@ -17,6 +17,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.signs import Signs
+from mbsym.analysis import constrained
 from mbsym.analysis.symmetric import blocks_of, symmetries_of
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
@@ -25,7 +26,6 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion, UnitVector
-from mbsym.problems import perturbation
 from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals import (
     ZeroLevels,
@@ -351,11 +351,7 @@ def check(analysis: Analysis) -> Check | None:
         ]
     if not new:
         return None
-    if analysis.system.constraints:
-        from mbsym.analysis.constrained import integrals_check
-
-        return replace(integrals_check(analysis, tuple(new)), name="polynomial integrals")
-    return replace(perturbation.check_integrals(truth, analysis.programs, new), name="polynomial integrals")
+    return replace(constrained.integrals_check(analysis, new, truth), name="polynomial integrals")
 
 
 class _Related(Oracles):

@@ -165,9 +165,7 @@ def _first_order(analysis: Analysis) -> Check | None:
 
 def _integrals(analysis: Analysis) -> Check | None:
     integrals = analysis.optional("integrals")
-    if integrals and analysis.system.constraints:
-        return constrained.integrals_check(analysis, integrals)
-    return perturbation.check_integrals(analysis.oracles, analysis.programs, integrals) if integrals else None
+    return constrained.integrals_check(analysis, integrals) if integrals else None
 
 
 def _stabilisation(analysis: Analysis) -> Check | None:

@@ -301,8 +301,15 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
     character, end = text[position], position + 1
     while character.isalpha() and end < len(text) and text[end].isalpha() and not text[end].isascii():
         end += 1
+    while character.isdecimal() and end < len(text) and text[end].isdecimal() and not text[end].isascii():
+        end += 1
     shown = text[position:end]
     hint = _LOOKALIKES.get(character)
+    if character.isdecimal():
+        hint = Message("digits are 0 to 9: write [[value]]", value=int(shown))
+    if re.match(r"\.(inf|nan)\b", text[position:], re.IGNORECASE):
+        end, hint = position + 4, "infinity and what is no number have no place here: write a number"
+        shown = text[position:end]
     if character == "'" and position and text[position - 1].isalnum():
         hint = "a velocity is written theta' or theta_dot, an acceleration theta'' or theta_ddot"
     if hint is None and character.isalpha():
@@ -590,7 +597,7 @@ class _Parser:
             factor = f"{token.text}(...)" if token.text in FUNCTIONS else token.text
             hint = Message("write [[what]]*[[what2]] for a product", what=previous.text, what2=factor)
         if previous.kind == "number" and token.kind == "name":
-            hint = _unit_hint(previous.text, token.text, self.named) or hint
+            hint = _other_base(previous.text + token.text) or _unit_hint(previous.text, token.text, self.named) or hint
         if _CONNECTIVES & {previous.text, token.text}:
             hint = Message("one condition in one place: write two that have to hold as two, or 0 < x < 1")
         if token.text == ",":
@@ -611,6 +618,15 @@ class _Parser:
             token,
             hint,
         )
+
+
+def _other_base(text: str) -> str | None:
+    """For ``0x1f``, and for an exponent that was not finished."""
+    if re.fullmatch(r"0x[0-9a-fA-F]+|0o[0-7]+|0b[01]+", text):
+        return Message("numbers are decimal: write [[value]]", value=int(text, 0))
+    if re.fullmatch(r"[0-9.]+[eE]", text):
+        return Message("an exponent has digits, as in 2e3: write [[value]]", value=text[:-1])
+    return None
 
 
 def _unit_hint(value: str, unit: str, named: bool) -> str | None:

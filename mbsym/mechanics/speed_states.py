@@ -15,6 +15,8 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.base import Lowering, Scalar
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.ring import Ring
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, Series, State, TaylorSeries
 from mbsym.model.speeds import OMEGA, Quaternion, Speed
 from mbsym.model.system import velocity_name
@@ -43,6 +45,12 @@ def variables(oracle: Oracle) -> dict[str, Series]:
             for i, name in enumerate(vector.components):
                 series[name] = _sum(own[k][i] * frame[k][vector.axis - 1] for k in range(3))
     return series | {speed.name: _speed(oracle, speed) for speed in system.speeds}
+
+
+def in_time(ring: Ring, oracle: Oracle) -> Carrier:
+    """Formulas as series in time along the motion from the oracle's state on, of which x and dx/dt count."""
+    series = {**oracle.in_time, **variables(oracle)}
+    return Carrier(ring, TaylorSeries(oracle.numbers, series), series)
 
 
 def _quaternion(oracle: Oracle, own: Any, frame: Any) -> list[Series]:

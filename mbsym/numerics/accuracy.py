@@ -37,8 +37,9 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import Meter, Working
 from mbsym.numerics.planning.sizes import AFFORDABLE, sizes_of_scene
 from mbsym.numerics.simulate import Trajectory
-from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, filled, uneven
+from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, uneven
 from mbsym.numerics.trade.reference_search import BITS, solved_at
+from mbsym.numerics.trade.trial import trial_of
 
 #: The better run's tolerance beside the run's own, and how much smaller it has to be where nothing else differs.
 TIGHTER, LEAST_RATIO = 1e-2, 0.1
@@ -73,9 +74,6 @@ STIFF = "rodas5p"
 #: A difference so many times the estimate contradicts it; what a witness may cost beside the two runs, or in any case;
 #: and where an estimate was asked for.
 CLEARLY, BESIDE, LITTLE, ASKED = 3.0, 2.0, 0.05, 2.0
-
-#: A witness is looked at after so many parts of the way, to see whether it costs too much.
-LOOKS = 30
 
 #: A run with a limit is not given up before this part of it; then, if it would cost so many times as much.
 EARLY, FAR_TOO_LONG = 0.2, 1.5
@@ -253,8 +251,8 @@ def _witnessed(
 ) -> ErrorEstimate:
     """The estimate, or that of a witness that contradicts it; ``costs``: what is allowed, and what the runs have cost.
 
-    A witness that is itself coarse comes closer to the run when it is made finer; one that stays as far away is
-    believed.  One that cannot be had for what is allowed, or that does not come to the end, says nothing.
+    A witness that is itself coarse comes closer to the run when it is made finer; one that stays where it is, as far
+    away, is believed.  One that cannot be had for what is allowed, or that does not come to the end, says nothing.
     """
     name = own[0].traits.name
     took_part = {name, *(change.method for change in trajectory.work.changes)}
@@ -280,22 +278,22 @@ def _testimony(
     (method, scalar), better, (limit, spent), end = own, estimate.against, costs, float(trajectory.times[-1])
     places = np.concatenate([[0.0], uneven(0.0, end, PLACES), [end]])
     scales = np.array([q.scale for q in estimate.quantities])
-    budget = _Budget(
-        dynamics, min(limit - spent, max(LITTLE if limit < inf else ASKED, BESIDE * spent)), end, even=False
-    )
+    most = min(limit - spent, max(LITTLE if limit < inf else ASKED, BESIDE * spent))
     setting, before = better.setting, inf
+    earlier: Any = None
     try:
-        run = method.start(dynamics, trajectory.setting, scalar)
-        states = filled(run, places)
+        states = trial_of(method, dynamics, trajectory.setting, places, scalar).whole().states
         while True:
-            truth = _filled(witness, dynamics, setting, better.scalar, places, budget)
+            truth = trial_of(witness, dynamics, setting, places, better.scalar, most).whole().states
             apart = float(np.max(np.max(np.abs(states - truth), axis=1) / scales))
             if apart <= CLEARLY * estimate.largest:
                 return estimate
-            if apart > before / CLEARLY:
+            if earlier is not None and apart > before / CLEARLY:
+                if CLEARLY * float(np.max(np.max(np.abs(truth - earlier), axis=1) / scales)) > apart:
+                    return None  # what it says hangs on its steps
                 break
-            setting, before = _finer(setting), apart
-    except (Breakdown, Unusable, _TooDear):
+            setting, before, earlier = _finer(setting), apart, truth
+    except (Breakdown, Unusable):
         return None
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
@@ -310,14 +308,6 @@ def _finer(setting: Setting) -> Setting:
     return replace(setting, tolerance=setting.tolerance * TIGHTER, longest=longest)
 
 
-def _filled(witness: Method, dynamics: Dynamics, setting: Setting, scalar: str, places: Any, budget: _Budget) -> Any:
-    """The states (2n, m) of a run at increasing places from 0.  Raises Breakdown, Unusable, _TooDear."""
-    with np.errstate(all="ignore"):
-        run = witness.start(dynamics, setting, scalar)
-    budget.start(((run, witness.traits.name, scalar),))
-    return filled(run, places, LOOKS, budget.reached)
-
-
 def _precisely(dynamics: Dynamics, trajectory: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:
     """The error of a run that no other method can judge, by an extrapolation in 160 bits at some places."""
     if not dynamics.features.none:  # an extrapolation would pass what is narrow, and knows nothing of switches
@@ -325,9 +315,8 @@ def _precisely(dynamics: Dynamics, trajectory: Trajectory, method: Method, scala
     end = float(trajectory.times[-1])
     rows = np.unique(np.linspace(0, len(trajectory.times) - 1, min(len(trajectory.times), PLACES)).astype(int))
     places = np.union1d(uneven(0.0, end, PLACES), trajectory.times[rows])
-    own = method.start(dynamics, trajectory.setting, scalar)
     try:
-        states = np.column_stack([own.state, own.fill(places[1:])])
+        states = trial_of(method, dynamics, trajectory.setting, places, scalar).whole().states
         states[:, np.searchsorted(places, trajectory.times[rows])] = trajectory.states[:, rows]
         truth = solved_at(dynamics, places, PRECISELY, PRECISE_COST)
     except Breakdown as ended:

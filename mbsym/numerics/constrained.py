@@ -274,12 +274,15 @@ class Constraints:
             return vectors / np.sqrt(np.maximum(values, positive[0] if len(positive) else 1.0))
 
     @cached_property
+    def _start(self) -> Any:
+        return np.array([float(x) for x in self._scenario.state])
+
+    @cached_property
     def _ranked(self) -> list[tuple[list[int], Any]]:
-        """(independent rows, state) at the positions that are looked at, where most rows are independent."""
-        state = np.array([float(x) for x in self._scenario.state])
-        candidates = [(self.independent(0.0, place), place) for place in self._places(state)]
-        rank = max(len(rows) for rows, _ in candidates)
-        return [(rows, place) for rows, place in candidates if len(rows) == rank]
+        """(independent rows, all rows) at the positions that are looked at, where most are independent."""
+        candidates = [(rows := self._of_length_one(0.0, place), self._orthogonalised(rows)[0]) for place in self.near]
+        rank = max(len(independent) for _, independent in candidates)
+        return [(independent, rows) for rows, independent in candidates if len(independent) == rank]
 
     @cached_property
     def kept(self) -> tuple[int, ...]:
@@ -295,9 +298,8 @@ class Constraints:
         """Those of the first ``count`` rows that follow from others, in sets that hang together."""
         relations: list[set[int]] = []
         independent = [i for i in self._ranked[0][0] if i < count]
-        for _, place in self._ranked:
-            rows = self._of_length_one(0.0, place)
-            own = [i for i in self.independent(0.0, place) if i < count]
+        for found, rows in self._ranked:
+            own = [i for i in found if i < count]
             for i in (i for i in range(count) if i not in own):
                 parts = np.linalg.lstsq(rows[own].T, rows[i], rcond=None)[0]
                 relations.append({i, *(k for k, part in zip(own, parts, strict=True) if abs(part) > CERTAIN)})
@@ -340,7 +342,7 @@ class Constraints:
     @cached_property
     def more_is_held(self) -> bool:
         """Whether the initial position is ``obstructed``: less moves than the rank tells."""
-        return self.obstructed(np.array([float(x) for x in self._scenario.state]))
+        return self.obstructed(self._start)
 
     def obstructed(self, state: Any) -> bool:
         """Whether the rows stop at second order what they allow: y J = 0 and  y (dJ/dq z) z != 0,  J z = 0.
@@ -371,7 +373,7 @@ class Constraints:
 
     def independent(self, t: float, state: Any) -> list[int]:
         """Rows that are independent at a position: holonomic ones first, of them the most independent one next."""
-        return self._orthogonalised(t, state)[0]
+        return self._orthogonalised(self._of_length_one(t, state))[0]
 
     def _of_length_one(self, t: float, state: Any) -> Any:
         """J M^-1/2, each row of length 1, or 0 where it vanishes beside those of its constraint."""
@@ -381,9 +383,9 @@ class Constraints:
         normalised[lengths <= DEPENDENT * self.slopes(lengths[:, None], 1.0)] = 0.0
         return normalised
 
-    def _orthogonalised(self, t: float, state: Any) -> tuple[list[int], float]:
-        """The independent rows, and what others leave at least of one of them."""
-        left, independent, least = self._of_length_one(t, state), [], 1.0
+    def _orthogonalised(self, left: Any) -> tuple[list[int], float]:
+        """Of rows of length 1 the independent ones, and what others leave at least of one of them."""
+        independent, least = [], 1.0
         for group in (range(self.holonomic), range(self.holonomic, len(self.names))):
             open_ = list(group)
             while open_:
@@ -400,8 +402,10 @@ class Constraints:
                     left = left - np.outer(left @ direction, direction)
         return independent, least
 
-    def _places(self, state: Any) -> list[Any]:
+    @cached_property
+    def near(self) -> list[Any]:
         """The initial position and some beside it to which the constraints let it move: on its way, if it has one."""
+        state = self._start
         source, n, places = np.random.default_rng(5), self.size, [state]
         velocities = state[self.places :]
         weights = self.weights(0.0, state)
@@ -414,7 +418,7 @@ class Constraints:
             elif self.holonomic:  # else any way that all rows allow
                 way -= weights @ np.linalg.lstsq(rows @ weights, rows @ way, rcond=CERTAIN)[0]
             place = self.led(0.0, self.displaced(0.0, state, way))
-            if place is not None and self._orthogonalised(0.0, place)[1] > CERTAIN:
+            if place is not None and self._orthogonalised(self._of_length_one(0.0, place))[1] > CERTAIN:
                 places.append(place)
         return places
 
@@ -447,9 +451,8 @@ class Constraints:
 
         Or singular everywhere there, whatever the rows hold.
         """
-        state = np.array([float(x) for x in self._scenario.state])
         regular = False
-        for place in self._places(state):
+        for place in self.near:
             masses = self._masses(np.concatenate(([0.0], place))).reshape(self.size, self.size)
             sizes = np.sqrt(np.diag(masses))
             held = sizes > 0
@@ -470,14 +473,13 @@ class Constraints:
         sum_i s_i / pivot_i grows like 1/sigma^2 towards one, with s_i the largest S_ii at positions near the start; it
         is measured by NEAREST times its value at the start.
         """
-        state = np.array([float(x) for x in self._scenario.state])
         dynamics = self.dynamics
-        rows = [self.at(0.0, x).partials @ self.weights(0.0, x) for x in self._places(state)]
+        rows = [self.at(0.0, x).partials @ self.weights(0.0, x) for x in self.near]
         lengths = np.max([np.sum(row**2, axis=1) for row in rows], axis=0)
         numbers_of = [self.names.index(row.name) for row in dynamics.rows]
         sizes = np.array([max(lengths[numbers_of[k]] for k in owners) for owners in dynamics.owners])
         pivots = substituted(dynamics.program, dynamics.pivots[self.size :], numbers := bound(self._scenario))
-        values = arrays.kernel(Code(numbers, self.inputs, tuple(pivots)))(np.concatenate(([0.0], state)))
+        values = arrays.kernel(Code(numbers, self.inputs, tuple(pivots)))(np.concatenate(([0.0], self._start)))
         with np.errstate(all="ignore"):
             usual = float(np.sum(sizes / values))
         limit = NEAREST * (usual if np.isfinite(usual) and usual > self.rank else self.rank)

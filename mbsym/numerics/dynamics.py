@@ -236,20 +236,30 @@ class Dynamics:
     @cached_property
     def energies(self) -> Code:
         """(t, q, q') -> (T - U, T2 - T0 - U), T of the motion in inertial space."""
-        found, fresh = self._programs, self._specialised
-        nodes = [found.energy, found.kinetic_energy, found.force_function]
-        energy, kinetic, force = substituted(found.program, nodes, fresh)
+        (energy, kinetic, force), fresh = self._inertial, self._specialised
         lagrangian = kinetic + force
         momenta = gradient(fresh, lagrangian, [fresh.input(name) for name in self.system.velocities])
         return self._code([energy, self._jacobi(lagrangian, momenta)])
+
+    @cached_property
+    def _inertial(self) -> Sequence[Node]:
+        """(T - U without the gyrostatic term, T, U) of the motion in inertial space, in the specialised program."""
+        found = self._programs
+        nodes = [found.energy, found.kinetic_energy, found.force_function]
+        return substituted(found.program, nodes, self._specialised)
+
+    @property
+    def _at_rest(self) -> Sequence[Node]:
+        """s0 of the speeds u = S q' + s0: nothing moves at these but what is prescribed."""
+        return [self._specialised.zero for _ in self.system.velocities]
 
     @cached_property
     def natural(self) -> bool:
         """Whether T - U and T2 - T0 - U are one: T vanishes at rest, as it does where nothing is prescribed."""
         still = bound(self.scenario)
         still.bound.update(dict.fromkeys(self.system.velocities, still.number(0)))
-        (kinetic,) = substituted(self._programs.program, [self._programs.kinetic_energy], still)
-        return still.vanishes(kinetic)
+        nodes = substituted(self._specialised, [self._inertial[1], *self._at_rest], still)
+        return all(still.vanishes(x) for x in nodes)
 
     @cached_property
     def constraint_power(self) -> Code:
@@ -275,11 +285,11 @@ class Dynamics:
         )
 
     def _jacobi(self, lagrangian: Node, momenta: Sequence[Node]) -> Node:
-        """q'.p - L."""
+        """q'.p - L; of speeds sum (u_r - s0_r) p_r - L."""
         fresh = self._specialised
         total = -lagrangian
-        for name, momentum in zip(self.system.velocities, momenta, strict=True):
-            total = total + fresh.product(fresh.input(name), momentum)
+        for name, drift, momentum in zip(self.system.velocities, self._at_rest, momenta, strict=True):
+            total = total + fresh.product(fresh.input(name) - drift, momentum)
         return total
 
 

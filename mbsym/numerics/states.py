@@ -22,14 +22,13 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from mbsym.algebra.derivative import gradient
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.matrices import dot
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.tree import Name
-from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
 from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.factorisation import solve
 from mbsym.mechanics.falling import relative_lagrangian
@@ -43,7 +42,7 @@ from mbsym.model.system import Body, System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.precise import enclosures
-from mbsym.numerics.scenario import PRECISION, Scenario, bound, rounded, substituted
+from mbsym.numerics.scenario import PRECISION, Scenario, rounded, substituted
 
 
 def state_names(system: System) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -164,51 +163,27 @@ class StateDynamics(Dynamics):
         return self._code(list(self._in_program[1]))
 
     @cached_property
-    def _both(self) -> tuple[list[Node], list[Node], list[Node]]:
-        """(T, U), the same seen from the frames that fall, and s0, in the specialised program."""
+    def _in_scene(self) -> Sequence[Node]:
+        """(T - U without the gyrostatic term, T, U), (T, U) seen from the frames that fall, and s0."""
         form, program = self.form, Program()
         inputs: dict[str, Node] = dict(program_environment(self.described, program))
         scene = form.scene_over(program, inputs)
         carry = Carrier(form.ring, program, inputs)
-        drifts = [carry(x) for x in form.drifts]
-        nodes = [kinetic_energy(scene), force_function(scene), *relative_lagrangian(scene), *drifts]
-        made = substituted(program, nodes, self._specialised)
-        return made[:2], made[2:4], made[4:]
+        kinetic, force = kinetic_energy(scene), force_function(scene)
+        nodes = [kinetic - force - gyrostatic_term(scene), kinetic, force, *relative_lagrangian(scene)]
+        return substituted(program, [*nodes, *(carry(x) for x in form.drifts)], self._specialised)
 
-    @cached_property
+    @property
+    def _inertial(self) -> Sequence[Node]:
+        return self._in_scene[:3]
+
+    @property
     def _lagrangian(self) -> tuple[Node, Node]:
-        kinetic, force = self._both[1]
-        return kinetic, force
+        return self._in_scene[3], self._in_scene[4]
 
-    def _generalised(self, kinetic: Node, force: Node) -> Node:
-        """sum (u_r - s0_r) dL/du_r - L."""
-        fresh = self._specialised
-        speeds = [fresh.input(u.name) for u in self.form.speeds]
-        total = -(kinetic + force)
-        for u, drift, momentum in zip(speeds, self._both[2], gradient(fresh, kinetic + force, speeds), strict=True):
-            total = total + fresh.product(u - drift, momentum)
-        return total
-
-    @cached_property
-    def relative_energy(self) -> Code:
-        """(t, s, u) -> (h, T) of the Lagrangian relative to the frames that fall."""
-        kinetic, force = self._lagrangian
-        return self._code([self._generalised(kinetic, force), kinetic], thorough=True)
-
-    @cached_property
-    def energies(self) -> Code:
-        """(t, s, u) -> (T - U, T2 - T0 - U), T of the motion in inertial space."""
-        kinetic, force = self._both[0]
-        return self._code([kinetic - force, self._generalised(kinetic, force)])
-
-    @cached_property
-    def natural(self) -> bool:
-        """Whether T - U and T2 - T0 - U are one: at u = 0 everything is at rest."""
-        still = bound(self.scenario)
-        still.bound.update({u.name: still.number(0) for u in self.form.speeds})
-        fresh = self._specialised
-        nodes = substituted(fresh, [self._both[0][0], *self._both[2]], still)
-        return all(still.vanishes(x) for x in nodes)
+    @property
+    def _at_rest(self) -> Sequence[Node]:
+        return self._in_scene[5:]
 
     def exactly(self, point: Sequence[Any]) -> Sequence[Any]:
         """The point with quaternions of norm 1, and unit vectors at right angles (Gram and Schmidt), as balls."""

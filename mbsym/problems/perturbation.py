@@ -28,9 +28,9 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import in_step
-from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State, TaylorSeries
+from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated
-from mbsym.mechanics.speed_states import variables
+from mbsym.mechanics.speed_states import in_time
 from mbsym.mechanics.states import SEED, Oracles, drawn
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System, acceleration_name, velocity_name
@@ -238,9 +238,7 @@ def check_integrals(truth: Oracles, programs: Programs, first_integrals: Sequenc
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = accelerated(truth.system, oracle.state, programs)
-        moving = Oracle(truth.system, state)
-        environment = {**moving.in_time, **variables(moving)}
-        carry = Carrier(truth.ring, TaylorSeries(state.numbers, environment), environment)
+        carry = in_time(truth.ring, Oracle(truth.system, state))
         return [(item.name, carry(item.formula.polynomial).b, state.numbers.zero) for item in short]
 
     return compare(truth, "first integrals", ("dI/dt along the motion", "zero"), pairs, states=1)

@@ -9,11 +9,11 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.algebra.factors import content, irreducible_factors
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import added, cramer, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined, worded
-from mbsym.expressions.rates import ENDINGS, acceleration_name
+from mbsym.expressions.rates import ENDINGS, acceleration_name, without_velocity
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
@@ -339,26 +339,38 @@ def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
 
 
 def _of_rows(analysis: Analysis) -> tuple[str, ...]:
-    """What the rows of the equations of motion are named after."""
+    """What the rows of the equations of motion are named after, in their order: in speeds these and coordinates."""
     system = analysis.system
     if system.linear is not None:
         return ()
-    return tuple(speed.name for speed in system.speeds) or system.coordinates
+    if not system.speeds:
+        return system.coordinates
+    try:
+        rows = cast("SpeedEquations", analysis.equations).speeds
+    except Failure:  # which is said of the equations
+        rows = tuple(speed.name for speed in system.speeds)
+    return tuple(name if name in system.variables else without_velocity(name) for name in rows)
 
 
 def known_names(analysis: Analysis) -> list[str]:
-    """Everything that may be asked for."""
-    return list(dict.fromkeys((*NAMES, *(body.name for body in analysis.system.bodies), *_of_rows(analysis))))
+    """Everything that may be asked for.  Derives the equations of a system in speeds."""
+    return list(dict.fromkeys((*given_names(analysis), *_of_rows(analysis))))
+
+
+def given_names(analysis: Analysis) -> tuple[str, ...]:
+    """What may be asked for before anything is derived."""
+    return (*NAMES, *(body.name for body in analysis.system.bodies))
 
 
 def lines(analysis: Analysis, name: str) -> Iterator[Line]:
     """The formulas that go by a name.  Raises KeyError where nothing has it, Failure where there is no result."""
     if name in NAMES:
         return NAMES[name][1](analysis)
-    if name not in known_names(analysis):
+    if name in given_names(analysis):
+        return _of_body(analysis, name)
+    if name not in _of_rows(analysis):
         raise KeyError(name)
-    bodies = {body.name for body in analysis.system.bodies}
-    return _of_body(analysis, name) if name in bodies else _of_equation(analysis, name)
+    return _of_equation(analysis, name)
 
 
 def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:

@@ -82,6 +82,7 @@ def _draft(number: int, node: Node, reading: Reading) -> Draft:
     if not is_body_name(name):
         hint = "letters, digits, blanks and . / _ -, beginning with a letter"
         reading.error("bad-name", Message("a body cannot be called [[name]]", name=ascii_safe(name)), scalar.span, hint)
+        name = name if name != INERTIAL else f"body {number}"  # what is attached to 0 is attached to the ground
     fields.what = Message("body [[name]]", name=ascii_safe(name))
     return Draft(number, name, scalar.span, fields, [])
 

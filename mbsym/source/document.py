@@ -171,12 +171,18 @@ def _decoded(data: bytes) -> tuple[str, Complaint | None]:
     if len(data) > 4 * MAX_TEXT:
         return "", Complaint("too-large", Message("a description has at most [[most]] characters", most=MAX_TEXT))
     if b"\0" in data:
-        return "", Complaint("unreadable", "this is a binary file, not a text")
+        message = "this is a binary file, or a text in UTF-16: the character U+0000 stands here"
+        place = _place(data, data.index(b"\0"))
+        return data.decode("utf-8", "replace"), Complaint("unreadable", message, place, "save it as UTF-8")
     try:
         return data.decode("utf-8"), None
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        return "", Complaint(
-            "not-utf8",
-            Message("the file is not UTF-8 text (byte [[start]], line [[line]])", start=error.start, line=line),
-        )
+        message = Message("the file is not UTF-8 text (byte [[start]])", start=error.start)
+        place = _place(data, error.start)
+        return data.decode("utf-8", "replace"), Complaint("not-utf8", message, place, "save it as UTF-8")
+
+
+def _place(data: bytes, start: int) -> Span:
+    """Line and column of a byte, in characters as far as it is UTF-8."""
+    line_start = data.rfind(b"\n", 0, start) + 1
+    return Span(data.count(b"\n", 0, start) + 1, len(data[line_start:start].decode("utf-8", "replace")) + 1)

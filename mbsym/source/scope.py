@@ -298,7 +298,7 @@ class Scope:
             return close
         if self.kinds.get(without_velocity(name)) == "prescribed":
             return "a prescribed motion has a constant rate: write the rate"
-        reason = why_no_name(name)
+        reason = why_no_name(name) if allowed.kinds else None
         if reason is not None:
             return joined([Message("it cannot be a name: [[why]]", why=reason[0]), *filter(None, reason[1:])], "; ")
         if name.lower() in DEGREES:

@@ -231,11 +231,11 @@ Formulas in a description
     functions     {functions}
     in loads      {kinked}
     tables        {tabulated}
-    velocities    x_dot or x' of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
-    speeds        the names under 'speeds': where velocities may stand in loads; components of unit vectors in a force,
-                  a torque, a potential
+    velocities    x_dot or x' of a coordinate x: in forces, torques, dissipation functions, velocity constraints, claims
+    speeds        the names under 'speeds': where velocities may stand; components of unit vectors in forces, torques,
+                  potentials, constraints
     accelerations x_ddot or x'': in claims of equations of motion and of values
-    time          t: in loads and claims
+    time          t: in joints, loads, constraints and claims
 
 Angles are in radians (30 degrees are pi/6); any number may be an angle, and fractions of pi and decimals stay exact:
 sin(pi/12) is made of roots, sin(pi/7) and sin(0.7853) are constants of their own.  All numbers belong to one

@@ -144,16 +144,17 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
 def derive(context: Asked, request: Request, watch: Watch) -> Shown:
     """Raises Underived, NotFit for names that there are not."""
     from mbsym.algebra.failures import Failure
-    from mbsym.report.formulas_by_name import known_names, remarked, written
+    from mbsym.report.formulas_by_name import given_names, known_names, remarked, written
     from mbsym.report.letters import in_letters, letters_of
     from mbsym.report.plain_writer import Writer
 
     source, language, say = _source(context, request, watch), request.language, Language(context.system.language).say
-    known = known_names(source.analysis)
     usual = ("equations",) if source.system.linear is None else ("M0", "D", "G", "K", "N")
-    unknown = [name for name in request.names if name not in known]
-    if unknown:
-        raise NotFit([_unknown(name, known) for name in unknown])
+    if not {*request.names} <= {*given_names(source.analysis)}:
+        known = known_names(source.analysis)
+        unknown = [name for name in request.names if name not in known]
+        if unknown:
+            raise NotFit([_unknown(name, known) for name in unknown])
     # Other programs know no letters, unless somebody asks for them.
     letters = () if context.letters is None and language in ("python", "wolfram") else context.letters
     texts: list[str] = []
@@ -172,7 +173,8 @@ def derive(context: Asked, request: Request, watch: Watch) -> Shown:
             if unasked and length > MOST_UNASKED:
                 many = "equations: [[count]], of [[length]] characters together; one of them, or all:"
                 command = f"  mbsym show {context.file}"
-                texts = [say(Message(many, count=len(lines), length=length)), f"{command} {known[-1]}"]
+                last = known_names(source.analysis)[-1]
+                texts = [say(Message(many, count=len(lines), length=length)), f"{command} {last}"]
                 return Shown(_joined([*texts, f"{command} {name}"]))
             for line, formula in zip(lines, formulas, strict=True):
                 texts += [remarked(safe(say(line.remark)), language)] if line.remark else []

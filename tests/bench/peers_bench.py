@@ -1,26 +1,30 @@
 """Integrators beside mbsym's: equal equations, equal rows, equal measured error, ratios of one run.
 
-    python tests/bench/peers_bench.py [--quick]
+    python tests/bench/peers_bench.py [--quick] [--stiff]
 
 who          what
 -----------  ----------------------------------------------------------------------------------------------------------
 scipy+numba  SciPy's DOP853 (Radau on stiff scenes) on the straight-line program compiled by numba, its Jacobian too
+sundials     CVODE's BDF on stiff scenes, by scikit-sundae, right-hand side and Jacobian by numba
 diffrax      Dopri8 (Kvaerno5 on stiff scenes), whole solve under jax.jit on the CPU in float64
 pinocchio    classical RK4 with as many steps as that needs, times four calls of its ABA (in C++: a lower bound)
 rk4 at 1 ms  mbsym's own compiled RK4 over the whole interval, against dop853 at the error that RK4 has
 
 All but the last take the loosest tolerance (half decades) at which the largest error of 2001 rows, relative to each
 component's size, is within the target, and are timed with the rows that are asked for; the reference is mbsym's dop853
-in extended arithmetic, held against a run of rk45 (radau on stiff scenes).  Times are the least processor times of
-interleaved repetitions, compiling not counted.  Who is not installed (the extra ``bench``) is named.
+in extended arithmetic, held against a run of rk45 (on stiff scenes rodas5p, held against CVODE, both at 1e-13).  Times
+are the least processor times of interleaved repetitions, compiling not counted.  Who is not installed (the extra
+``bench``) is named.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import cache
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -43,6 +47,7 @@ from mbsym.numerics.scenario import scenario  # noqa: E402
 
 SYSTEMS = HERE.parents[1] / "systems"
 JUDGED, REPEATS, POWERS = 2001, 7, np.arange(3.0, 14.01, 0.5)
+STIFFNESSES = 10**3, 10**6
 
 #: times -> states (2n, m)
 Fill = Callable[[Any], Any]
@@ -92,20 +97,27 @@ def own(method: str) -> Callable[[Dynamics, float], Fill]:
     return make
 
 
+@cache
+def by_numba(dynamics: Dynamics) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """The right-hand side and its Jacobian (n, n)."""
+    import math
+
+    import numba
+
+    names = {"np": np, "math": math}
+    parts = ((dynamics.right_hand_side, "rhs"), (dynamics.jacobian, "jac"))
+    rhs, flat = (numba.njit(function(code, name, "math", "np.array([{}])", names)) for code, name in parts)
+    n = len(dynamics.scenario.state)
+    return rhs, lambda t, x: flat(t, x).reshape(n, n)
+
+
 def scipy_numba(solver: str) -> Callable[[Dynamics, float], Fill]:
     def make(dynamics: Dynamics, tolerance: float) -> Fill:
-        import math
-
-        import numba
         from scipy.integrate import solve_ivp
 
-        names = {"np": np, "math": math}
-        rhs = numba.njit(function(dynamics.right_hand_side, "rhs", "math", "np.array([{}])", names))
+        rhs, slopes = by_numba(dynamics)
         start = np.array([float(x) for x in dynamics.scenario.state])
-        more: dict[str, Any] = {}
-        if solver == "Radau":
-            flat, n = numba.njit(function(dynamics.jacobian, "jac", "math", "np.array([{}])", names)), len(start)
-            more["jac"] = lambda t, x: flat(t, x).reshape(n, n)
+        more = {"jac": slopes} if solver == "Radau" else {}
         rhs(0.0, start)
 
         def fill(times: Any) -> Any:
@@ -117,35 +129,76 @@ def scipy_numba(solver: str) -> Callable[[Dynamics, float], Fill]:
     return make
 
 
+def sundials(dynamics: Dynamics, tolerance: float) -> Fill:
+    """CVODE's BDF by scikit-sundae, which calls right-hand side and Jacobian through Python."""
+    from sksundae.cvode import CVODE
+
+    rhs, slopes = by_numba(dynamics)
+    start = np.array([float(x) for x in dynamics.scenario.state])
+
+    def rates(t: float, x: Any, into: Any) -> None:
+        into[:] = rhs(t, x)
+
+    def jacobian(t: float, x: Any, _: Any, into: Any) -> None:
+        into[:] = slopes(t, x)
+
+    solver = CVODE(rates, rtol=tolerance, atol=tolerance, jacfn=jacobian, max_num_steps=200_000)
+
+    def fill(times: Any) -> Any:
+        found = solver.solve(times, start).y.T
+        return found if found.shape[1] == len(times) else np.full((len(start), len(times)), np.nan)
+
+    return fill
+
+
+@cache
+def by_diffrax(dynamics: Dynamics, solver: str) -> Callable[[Any, float], Any]:
+    """The whole solve, compiled once: (times, tolerance) -> states (m, 2n)."""
+    import diffrax as dfx
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    import jax.numpy as jnp
+
+    rhs = function(dynamics.right_hand_side, "rhs", "jnp", "jnp.stack([jnp.asarray(v) for v in ({},)])", {"jnp": jnp})
+    start = jnp.array([float(x) for x in dynamics.scenario.state])
+    term = dfx.ODETerm(lambda t, x, args: rhs(t, x))
+
+    @jax.jit
+    def solve(times: Any, tolerance: Any) -> Any:
+        way, control = getattr(dfx, solver)(), dfx.PIDController(rtol=tolerance, atol=tolerance)
+        save = dfx.SaveAt(ts=times)
+        return dfx.diffeqsolve(
+            term, way, 0.0, times[-1], None, start, saveat=save, stepsize_controller=control, max_steps=200_000,
+            throw=False,
+        ).ys  # fmt: skip
+
+    return lambda times, tolerance: np.asarray(solve(jnp.asarray(times), tolerance).block_until_ready())
+
+
 def diffrax(solver: str) -> Callable[[Dynamics, float], Fill]:
     def make(dynamics: Dynamics, tolerance: float) -> Fill:
-        import diffrax as dfx
-        import jax
-
-        jax.config.update("jax_enable_x64", True)
-        import jax.numpy as jnp
-
-        rhs = function(
-            dynamics.right_hand_side, "rhs", "jnp", "jnp.stack([jnp.asarray(v) for v in ({},)])", {"jnp": jnp}
-        )
-        start = jnp.array([float(x) for x in dynamics.scenario.state])
-        term, control = dfx.ODETerm(lambda t, x, args: rhs(t, x)), dfx.PIDController(rtol=tolerance, atol=tolerance)
-
-        @jax.jit
-        def solve(times: Any) -> Any:
-            way = getattr(dfx, solver)()
-            save = dfx.SaveAt(ts=times)
-            return dfx.diffeqsolve(
-                term, way, 0.0, times[-1], None, start, saveat=save, stepsize_controller=control, max_steps=200_000,
-                throw=False,
-            ).ys  # fmt: skip
-
-        return lambda times: np.asarray(solve(jnp.asarray(times)).block_until_ready()).T
+        solve = by_diffrax(dynamics, solver)
+        return lambda times: solve(times, tolerance).T
 
     return make
 
 
 # --- what is compared ---
+
+
+PLAIN = {
+    "mbsym dop853": own("dop853"),
+    "scipy+numba DOP853": scipy_numba("DOP853"),
+    "diffrax Dopri8": diffrax("Dopri8"),
+}
+STIFF = {
+    "mbsym rodas5p": own("rodas5p"),
+    "mbsym radau (SciPy's)": own("radau"),
+    "scipy+numba Radau": scipy_numba("Radau"),
+    "sundials CVODE": sundials,
+    "diffrax Kvaerno5": diffrax("Kvaerno5"),
+}
 
 
 def sizes(truth: Any) -> Any:
@@ -188,34 +241,25 @@ def least(work: Sequence[Callable[[], Any]]) -> list[float]:
 
 def reference(dynamics: Dynamics, times: Any, stiff: bool) -> tuple[Any, float]:
     """(states, how far a solution by another method is from them)."""
+    start = np.array([float(x) for x in dynamics.scenario.state])[:, None]
+    if stiff:
+        found, other = own("rodas5p")(dynamics, 1e-13)(times), sundials(dynamics, 1e-13)(times)
+        return found, error(other, found)
     how = Setting(tolerance=1e-16, longest=float(times[-1]) / 2000)
     states = METHODS["dop853"].start(dynamics, how, EXTENDED).fill(times[1:])
-    other = METHODS["radau"].start(dynamics, Setting(tolerance=1e-12)) if stiff else None
-    other = other or METHODS["rk45"].start(dynamics, Setting(tolerance=1e-14))
-    start = np.array([float(x) for x in dynamics.scenario.state])[:, None]
+    other = METHODS["rk45"].start(dynamics, Setting(tolerance=1e-14)).fill(times[1:])
     found = np.hstack([start, states.astype(float)])
-    return found, error(np.hstack([start, np.asarray(other.fill(times[1:]), dtype=float)]), found)
+    return found, error(np.hstack([start, np.asarray(other, dtype=float)]), found)
 
 
-def compare(title: str, text: str, end: float, goal: float, rows: int, stiff: bool) -> None:
+def compare(title: str, text: str, end: float, goal: float, rows: int, stiff: bool) -> dict[str, float]:
+    """Seconds by who integrates; what was found is printed."""
     dynamics = Dynamics(scenario(mbsym.loads(text).system))
     judged, times = np.linspace(0.0, end, JUDGED), np.linspace(0.0, end, rows)
     truth, agreement = reference(dynamics, judged, stiff)
     print(f"\n{title}: {end:g} s, {rows} rows, error {goal:.0e}; the references differ by {agreement:.0e}", flush=True)
-    peers = {} if stiff else {"mbsym dop853": own("dop853")}
-    peers |= (
-        {
-            "mbsym rodas5p": own("rodas5p"),
-            "mbsym radau (SciPy's)": own("radau"),
-            "scipy+numba Radau": scipy_numba("Radau"),
-            "diffrax Kvaerno5": diffrax("Kvaerno5"),
-        }
-        if stiff
-        else {}
-    )
-    peers |= {} if stiff else {"scipy+numba DOP853": scipy_numba("DOP853"), "diffrax Dopri8": diffrax("Dopri8")}
     found = {}
-    for who, make in peers.items():
+    for who, make in (STIFF if stiff else PLAIN).items():
         try:
             fit = fitting(make, dynamics, judged, truth, goal)
         except (ImportError, Unusable) as reason:
@@ -229,6 +273,14 @@ def compare(title: str, text: str, end: float, goal: float, rows: int, stiff: bo
     first = min((s for who, s in zip(found, seconds, strict=True) if who.startswith("mbsym")), default=inf)
     for (who, (_, tolerance, wrong)), spent in zip(found.items(), seconds, strict=True):
         print(f"  {who:22} tolerance {tolerance:.1e} error {wrong:.1e} {spent * 1e3:9.4g} ms  {spent / first:7.2f}")
+    return dict(zip(found, seconds, strict=True))
+
+
+def van_der_pol(stiffness: int, goal: float) -> dict[str, float]:
+    """Somewhat more than a period."""
+    text, _ = scene("van der pol")
+    text = text.replace("100*(", f"{stiffness}*(")
+    return compare(f"van der pol, mu = {stiffness:.0e}", text, 2.0 * stiffness, goal, 201, True)
 
 
 def fixed_steps(title: str, text: str, end: float, rows: int) -> None:
@@ -296,7 +348,12 @@ def scene(name: str) -> tuple[str, float]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--quick", action="store_true", help="one system of each kind")
-    quick = parser.parse_args().quick
+    parser.add_argument("--stiff", action="store_true", help="van der Pol's oscillator alone, as a JSON record")
+    options = parser.parse_args()
+    if options.stiff:
+        print(json.dumps({f"{stiffness:.0e}": van_der_pol(stiffness, 1e-4) for stiffness in STIFFNESSES}))
+        return
+    quick = options.quick
     names = (("double-pendulum", 10.0), ("spring-pendulum", 20.0), ("spatial-arm", 5.0))
     for name, end in names[: 1 if quick else None]:
         text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
@@ -304,10 +361,8 @@ def main() -> None:
             for rows in (2,) if quick else (2, 2001):
                 compare(name, text, end, goal, rows, False)
         fixed_steps(name, text, end, 201)
-    text, end = scene("van der pol")
-    compare("van der pol, mu = 100", text, end, 1e-4, 201, True)
-    for goal in (1e-4, 1e-8):
-        compare("van der pol, mu = 1000", text.replace("100*(", "1000*("), 10 * end, goal, 201, True)
+    for stiffness in STIFFNESSES[: 1 if quick else None]:
+        van_der_pol(stiffness, 1e-4)
     pinocchio(1e-8)
 
 

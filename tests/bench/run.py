@@ -35,7 +35,7 @@ import peer_arm  # noqa: E402  (imports sympy only where it derives)
 import peer_satellite  # noqa: E402
 
 SATELLITE = "systems/satellite.yaml"
-ALL = ("waiting", "satellite", "arm", "robots", "chains", "folder", "forward", "simulation", "growth")
+ALL = ("waits", "satellite", "arm", "robots", "forward", "simulation", "growth")
 KINDS = ("principal", "full")
 ROAD_TITLES = {
     "library": "LagrangesMethod, Linearizer",
@@ -559,8 +559,9 @@ def main() -> None:
         "arm": (arm, show_arm),
     }
     import large_bench
+    import waits_bench
 
-    for name, (work, show) in large_bench.SECTIONS.items():
+    for name, (work, show) in (large_bench.SECTIONS | waits_bench.SECTIONS).items():
         sections[name] = (work, partial(show, table=table))
     if set(options.sections.split(",")) - set(sections):
         import numbers_bench  # NumPy and compilers: not in a process whose children's memory is measured

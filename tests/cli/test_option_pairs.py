@@ -495,4 +495,5 @@ def test_every_option_is_there() -> None:
         "--fixed",  # of descriptions with constraints: tests/constrained/test_constrained_runs.py
         "--variables",  # of descriptions with speeds: tests/cli/test_declared_variables.py
         "--verbose",  # what is printed alone
+        "--anew",  # where something was measured before: tests/cli/test_remembered.py
     }

@@ -251,6 +251,14 @@ def test_an_equation_begins_with_its_accelerations() -> None:
     # x0' and the particle's own acceleration: M of the third row of Euler's equations.
     assert first == "A (eps x^2 + 2 eps rho x + 1) q' - A eps y'"
     assert "'" not in rest
+    # Rows in the order of bodies: where one has coordinates alone, its equation goes by these.
+    cart = "{name: cart, connection point: [x, 0, 0], coordinates: [x], mass: m}"
+    body = "{name: body, attached to: cart, rotation: {axes: [3], angles: [a]}, mass: 0, inertia about: joint, "
+    body += "inertia: [J/2, J/2, J], speeds: {w: omega3}}"
+    text = f"mbsym: 1\nname: Two\nparameters: {{m: positive, J: positive, k: real}}\nbodies: [{cart}, {body}]\n"
+    mixed = mbsym.loads(f"{text}loads: [{{generalized force: {{x: k}}}}]\n")
+    assert [str(line.value) for line in lines(mixed, "x")] == ["m*x_ddot", "-k"]
+    assert [str(line.value) for line in lines(mixed, "w")] == ["J*w_dot", "0"]
     tied = show("cartesian-pendulum", "x").stdout.splitlines()
     assert tied[1] == "m x''"
     assert tied[2].endswith("but for the forces of constraints")

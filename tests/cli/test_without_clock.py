@@ -1,7 +1,8 @@
 """No output depends on elapsed time: not where clocks jump ahead by 100 s at every look, not beside a busy process.
 
 Masked are measured seconds, which are information, and what is told of them: in the lines of the terminal a number
-followed by s, ms or µs (``MEASURED``), in files what ``unmeasured`` takes out.  All else is compared byte by byte.
+followed by s, ms, µs or "a second" (``MEASURED``), in files what ``unmeasured`` takes out.  All else is compared byte
+by byte.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 #: One measured duration in the lines of the terminal, with the blanks that fill its column; and a line of the ledger.
-MEASURED = re.compile(r" *\b[0-9][0-9.]*(?:e[-+]?\d+)? (?:s|ms|µs)\b")
+MEASURED = re.compile(r" *\b[0-9][0-9.]*(?:e[-+]?\d+)? (?:s|ms|µs|a second)\b")
 SECONDS = re.compile(r"^ *seconds of .*\n", re.MULTILINE)
 
 #: Commands, each in a folder of its own.
@@ -37,10 +38,14 @@ COMMANDS: dict[str, str] = {
     "tradeoff": "tradeoff systems/simple-pendulum.yaml --time 2 --budget 1 --methods dop853 --quiet --out out",
     "ledger": "run systems/double-pendulum.yaml --problems 2,5 --ledger --format json --out out",
     "cases": "integrals systems/henon-heiles.yaml --cases --budget 0.3",
+    "certificate": "simulate systems/simple-pendulum.yaml --time 2 --certify 1e-10 --format csv --out out",
+    "exponents": "lyapunov systems/double-pendulum.yaml --time 20 --out out",
+    "ensemble": "simulate systems/simple-pendulum.yaml --time 2 --vary theta=0.1:1:20 --format csv --out out",
+    "constrained": "simulate systems/cartesian-pendulum.yaml --time 1 --accuracy 1e-5 --format csv --out out",
 }
 
 #: Those that are run beside a busy process, too.
-BUSY = ("switches", "accuracy")
+BUSY = ("switches", "accuracy", "extremes", "tradeoff", "certificate", "exponents", "ensemble", "constrained")
 
 #: What is told only where a budget of theirs has cut something: the budgets above are small on purpose.
 CUT = {"extremes": "beyond the budget", "positions": "found from 3 starts", "cases": "Families beyond the budget"}

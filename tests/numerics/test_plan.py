@@ -690,6 +690,8 @@ def test_nothing_is_told_of_runs_that_part_before_the_end() -> None:
     (warning,) = (str(text) for title, text in bound_lines(plan, None) if title == "warning")
     assert f"two fine runs part from t = {plan.parted:.3g} on" in warning
     assert (plan.more, plan.less) == (None, None)
+    (method,) = (str(item.why) for item in plan.items if item.kind == "method")
+    assert method.endswith("none can be told to be enough")
 
 
 def test_dear_runs_that_part_are_not_made_finer_and_finer(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -162,6 +162,21 @@ def test_an_energy_that_changes_is_said_to() -> None:
     assert run.energy_conservation.standing is Standing.CHANGING
 
 
+@pytest.mark.parametrize("variables", ["declared", "coordinates"])
+def test_no_energy_contains_the_gyrostatic_term(variables: str) -> None:
+    """T = 1/2 omega . I omega = (1/2 + 2 2^2 + 3 4^2)/2 of a free gyrostat, told on a table that turns at the rate 1.
+
+    omega . (I omega + h)' = 0: T is constant, and h . omega, 5 4 at first, is not in it.
+    """
+    text = FREE.format("1/2", 2, 3, 1, 2, 3).replace("speeds:", "gyrostatic moment: [0, 0, 5]\n    speeds:")
+    table = "  - {name: table, attached to: 0, mass: 0, rotation: {axes: [3], angles: [s]}}\n"
+    text = text.replace("attached to: 0", "attached to: table").replace("bodies:\n", f"bodies:\n{table}")
+    analysis = mbsym.loads(text + "prescribed: {s: {rate: 1}}\n")
+    run = mbsym.simulate(analysis, 1.0, tolerance=1e-12, samples=5, estimate=False, variables=variables)
+    assert not run.dynamics.natural
+    assert run.energy == pytest.approx(np.full(5, 28.25), rel=1e-10)
+
+
 def test_events_are_in_the_declared_variables(jacobi: Analysis) -> None:
     """w1 = cn vanishes a quarter of the period after the start."""
     run = mbsym.simulate(jacobi, 2.0, tolerance=1e-13, samples=11, estimate=False, events="w1 = 0 falling")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction as F
 from functools import cache
@@ -20,6 +20,7 @@ from mbsym.model.units import TIME, Dimension, times
 from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.enclosure.field import NotAnalytic
 from mbsym.numerics.ensembles import side_by_side
 from mbsym.numerics.events.switching import rates
 from mbsym.numerics.inverse import inverse_constrained
@@ -156,23 +157,40 @@ def test_a_system_runs_alike_in_all_units(name: str, units: str) -> None:
 CHOOSING = ("bead-on-hoop", "spring-pendulum", "cartesian-pendulum", "chaplygin-sleigh", "clebsch", "henon-heiles")
 
 
-@pytest.mark.parametrize("units", ["mm-g-ms", "microns"])
-@pytest.mark.parametrize("name", CHOOSING)
+#: Left out, for their plans and certificates take a minute and more.
+LONG = {"gyrostat", "orbital-gyrostat", "rolling-disc-speeds", "rolling-sphere-speeds", "spatial-arm"}
+LONG |= {name for name in UNITS if name.startswith("satellite")}
+
+#: A bicycle's 22 steps err by a fifth more or less as it is rounded.
+ROUNDED = {"bicycle": 0.5}
+
+IN_UNITS = [(name, "mm-g-ms") for name in sorted(UNITS.keys() - LONG)] + [(name, "microns") for name in CHOOSING]
+
+
+@pytest.mark.parametrize(("name", "units"), IN_UNITS)
 def test_choices_and_bits_are_the_same_in_all_units(name: str, units: str) -> None:
     """What --accuracy takes, what bound it names, and how a certificate comes about."""
     given = scenario(described(name))
+    if given.declared:
+        pytest.skip("its start is declared in speeds, which are not written in other units here")
     kinds = [(given, F(1)), (rescaled(given, OTHER[units]), OTHER[units][2])]
     plans = [plan_for(one, Request(float(2 * unit), samples=101), Accuracy(1e-6))[0] for one, unit in kinds]
     chosen = [(plan.method, plan.scalar, plan.setting.step, plan.model, plan.reached) for plan in plans]
     assert chosen[1] == chosen[0]
     assert plans[1].setting.tolerance == pytest.approx(plans[0].setting.tolerance, rel=0.1)
-    assert plans[1].bound.total == pytest.approx(plans[0].bound.total, rel=0.2)
-    certificates = [
-        simulate(one, Request(float(unit) / 2, samples=11, certify=1e-10)).certificate for one, unit in kinds
-    ]
-    first, other = (certificate for certificate in certificates if certificate is not None)
-    assert (other.enclosure.bits, other.whole, other.narrow) == (first.enclosure.bits, True, True)
-    assert first.whole
+    assert plans[1].bound.total == pytest.approx(plans[0].bound.total, rel=ROUNDED.get(name, 0.2))
+    first, other = (enclosed(one, float(unit) / 2) for one, unit in kinds)
+    assert other == first
+    assert first is None or first[1:] == (True, True)
+
+
+def enclosed(given: Scenario, time: float) -> tuple[int, bool, bool] | None:
+    """(bits, whole, narrow) of a certificate; None where the equations have no power series."""
+    with suppress(NotAnalytic):
+        found = simulate(given, Request(time, samples=11, certify=1e-10, estimate=False)).certificate
+        assert found is not None
+        return found.enclosure.bits, found.whole, found.narrow
+    return None
 
 
 SPRING = described("spring-pendulum")

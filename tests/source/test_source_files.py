@@ -267,6 +267,24 @@ def test_files_that_are_no_text(tmp_path: Path, content: bytes, code: str) -> No
         assert [item.code for item in complaints] == [code]
 
 
+@pytest.mark.parametrize(
+    ("content", "line", "column"),
+    [
+        (b"mbsym: 1\nname: \xc3\xa9\xff\n", 2, 8),
+        ("mbsym: 1".encode("utf-16-le"), 1, 2),
+        (b"mbsym: 1\nname: a\0b", 2, 8),
+    ],
+)
+def test_what_is_no_utf8_has_its_place_and_a_way_out(tmp_path: Path, content: bytes, line: int, column: int) -> None:
+    path = tmp_path / "x.yaml"
+    path.write_bytes(content)
+    _, (complaint,), text = load(path)
+    assert complaint.span is not None
+    assert (complaint.span.line, complaint.span.column) == (line, column)
+    assert complaint.hint == "save it as UTF-8"
+    assert render(complaint, text, "x.yaml").startswith(f"x.yaml:{line}:{column}: error")
+
+
 def test_files_that_are_not_there(tmp_path: Path) -> None:
     for path in (tmp_path / "absent.yaml", tmp_path, Path("a\0b")):
         system, complaints, text = load(path)

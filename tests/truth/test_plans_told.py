@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -167,6 +168,24 @@ def test_stiff_motions_get_the_stiff_method(text: str, time: float, truth: Any, 
     assert found.plan.method == "rodas5p"
     assert found.trajectory.work.steps < 10_000
     assert np.max(np.abs(found["x"] - truth(found.times))) <= found.plan.bound.total
+
+
+def test_a_witness_that_never_comes_to_rest_is_not_believed() -> None:
+    """The same with c = 10^4 to 1e-11: implicit steps err by 6e-13 of the velocity, as 40 digits of it tell.
+
+    Explicit steps as long as stability lets them be err by 1e-10, at every tolerance otherwise: what they differ by is
+    theirs.
+    """
+    found = mbsym.simulate(mbsym.loads(SLOW.replace("10**6", "10**4")), 10, samples=101, accuracy=1e-11, estimate=True)
+    assert found.plan is not None
+    assert found.plan.reached
+    times = np.linspace(0, 3e-3, 61)
+    with mpmath.workdps(40):
+        fast = -(10**4 + mpmath.sqrt(10**8 - 4)) / 2
+        slow = 1 / fast
+        rates = [(mpmath.exp(slow * t) - mpmath.exp(fast * t)) / (fast - slow) for t in map(mpmath.mpf, times.tolist())]
+    rate = np.array([float(x) for x in rates])
+    assert np.max(np.abs(found.at(times)[1] - rate)) <= found.plan.bound.total * np.max(np.abs(rate))
 
 
 # --- every sentence of a plan, parsed back ---

@@ -140,6 +140,8 @@ def exponents(
     if not len(rates):
         none = np.full(flow.columns, np.nan)
         return Exponents(none, none, times, rates, float("nan"), float("nan"), 0.0, ended)
+    # A column is along what grows most of what the columns before it leave: only in the long run that sorts them.
+    rates = rates[:, np.argsort(-np.sum(rates, axis=0), kind="stable")]
     history = np.cumsum(rates, axis=0) / times[:, None]
     values = history[-1]
     panels = max(1, flow.run.work.steps // len(rates))

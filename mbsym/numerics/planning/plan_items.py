@@ -307,7 +307,7 @@ def _closest(settled: Settled) -> str:
     trial, none = settled.trial, _none(settled)
     least = min((other.error for other in settled.bench.trials), default=inf)
     near = min((other.cost for other in settled.bench.trials if other.error <= 2 * least), default=0.0)
-    if trial.error > 2 * least or trial.cost > ALIKE * near:
+    if least == inf or trial.error > 2 * least or trial.cost > ALIKE * near:
         return none
     text = "[[none]]: by counted work [[cheapest]] within twice the least error"
     return Message(text, none=none, cheapest=_cheapest(trial, near))

@@ -228,8 +228,7 @@ class _Analysis:
         jacobian = [row.partials for row in self.rows]
         columns, required = self._columns(len(independent))
         try:
-            regular = regular_at(points.jacobians())
-            return choose(self.ring, jacobian, independent, columns, regular, required, places(self.scene))
+            return choose(self.ring, jacobian, independent, columns, regular_at(points.jacobians()), required)
         except Constrained as reason:
             if not self.system.dependent:
                 raise
@@ -282,7 +281,7 @@ class _Analysis:
             ),
             exact_points=points.exact,
             pivots=pivots,
-            solved=None if embedding is None else Solved.of(self.ring, embedding),
+            solved=None if embedding is None else Solved.of(self.scene, embedding),
             dependent_sets=self._dependent_sets(independent, m, points),
             dependent_positions=self._dependent_sets(
                 [i for i in independent if self.rows[i].name.holonomic],
@@ -506,7 +505,7 @@ def constraints_in_speeds(
         coordinates=names,
         dependent=tuple(names[k] for k in pivots.columns),
         pivots=pivots,
-        solved=None if embedding is None else Solved.of(ring, embedding),
+        solved=None if embedding is None else Solved.of(scene, embedding),
         in_speeds=True,
     )
 

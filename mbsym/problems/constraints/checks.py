@@ -26,9 +26,9 @@ from mbsym.mechanics.constraints.oracle import oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
-from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
+from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
-from mbsym.mechanics.speed_states import all_slopes, completed, variables
+from mbsym.mechanics.speed_states import all_slopes, completed, in_time
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.system import acceleration_name
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check, Pair, _verdict
@@ -144,7 +144,7 @@ def check_integrals(
     """dI/dt along the motion, by series in time, with the accelerations of the equations with multipliers."""
 
     def pairs(on_manifold: OnManifold) -> list[Pair]:
-        carry = in_time(form, moving(form, on_manifold, tied, programs))
+        carry = in_time(form.ring, Oracle(form.system, moving(form, on_manifold, tied, programs)))
         return [(item.name, carry(item.formula.polynomial).b, on_manifold.state.numbers.zero) for item in integrals]
 
     return compared_on_manifold(
@@ -161,13 +161,6 @@ def moving(form: SpeedForm, on_manifold: OnManifold, tied: Constraints, programs
     rows = [programs.jacobian[i] for i in tied.independent]
     needed = [programs.acceleration[i] for i in tied.independent]
     return completed(Oracle(form.system, accelerated(form.system, state, programs.tree, rows, needed)))
-
-
-def in_time(form: SpeedForm, state: State) -> Carrier:
-    """Formulas as series in time along the motion that begins there: x, and dx/dt, count."""
-    oracle = Oracle(form.system, state)
-    series = {**oracle.in_time, **variables(oracle)}
-    return Carrier(form.ring, TaylorSeries(state.numbers, series), series)
 
 
 def null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[list[Any]]:

@@ -44,9 +44,11 @@ from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import is_certain
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.oracle import Oracle
+from mbsym.mechanics.speed_states import in_time
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.system import velocity_name
-from mbsym.problems.constraints.checks import in_time, moving
+from mbsym.problems.constraints.checks import moving
 from mbsym.problems.constraints.motion import Embedded, dependent_velocities
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
@@ -182,7 +184,11 @@ class AlongMotion:
                 with suppress(*NOT_THERE):
                     state = moving(self.form, on_manifold, self.tied, self.programs)
                     carried.append(
-                        (on_manifold, Carrier(self.ring, state.numbers, state.values), in_time(self.form, state))
+                        (
+                            on_manifold,
+                            Carrier(self.ring, state.numbers, state.values),
+                            in_time(self.ring, Oracle(self.form.system, state)),
+                        )
                     )
         return carried
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.constraints.dependence import Dependent
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector
 from mbsym.mechanics.constraints.rows import RowName
+from mbsym.mechanics.kinematics import Scene
+from mbsym.problems.knowledge import signs
 
 
 @dataclass(frozen=True)
@@ -65,18 +66,20 @@ class Demanded:
 class Solved(Shown):
     """q' = Y u + y0 and q'' = Y u' + a0: ``transformation`` Y (n x (n - r)), ``shift`` y0, ``acceleration_shift`` a0.
 
-    All regular where ``regular_where`` is not zero.
+    All regular where ``regular_where`` is not zero; ``regular_everywhere`` where that is known of all configurations.
     """
 
     transformation: Matrix
     shift: Column
     acceleration_shift: Column
     regular_where: Formula
+    regular_everywhere: bool
     embedding: Embedding
 
     @staticmethod
-    def of(ring: Ring, embedding: Embedding) -> Solved:
+    def of(scene: Scene, embedding: Embedding) -> Solved:
         """With the rows of all velocities."""
+        ring = scene.ring
         n = len(embedding.dependent) + len(embedding.free)
         columns = [basis_vector(ring, embedding, place) for place in range(len(embedding.free))]
         shift, acceleration = [ring.zero] * n, [ring.zero] * n
@@ -87,13 +90,9 @@ class Solved(Shown):
             column(ring, shift),
             column(ring, acceleration),
             Formula(ring, embedding.determinant),
+            signs(scene).never_zero(embedding.determinant),
             embedding,
         )
-
-    @property
-    def regular_everywhere(self) -> bool:
-        """Whether the dependent velocities can be solved for at every configuration."""
-        return bool(self.regular_where.polynomial.is_constant())
 
 
 @dataclass(frozen=True, repr=False)

@@ -192,6 +192,12 @@ def _of_two_frequencies(
     if name not in tower.parameters:
         raise NotAlong("the expansion does not depend on [[name]]", name=name)
     for key, x in named.items():
+        if x.is_zero() and key == "determinant":
+            raise NotAlong(
+                "for all values of [[name]] Arnold's determinant D4 vanishes: the energy has no terms of fourth order "
+                "that decide",
+                name=name,
+            )
         if x.is_zero():
             raise NotAlong("for all values of [[name]] this vanishes: [[key]]", name=name, key=key)
     return tower, named

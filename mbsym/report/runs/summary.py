@@ -108,7 +108,11 @@ def _doubtful(run: Simulation, unit: str | None) -> Iterator[Message]:
             text = "at t = [[time]] the mass matrix or the constraints were nearly singular (a pivot fell to [[pivot]])"
         yield Message(text, time=with_unit(f"{at:.6g}", unit), pivot=f"{ratio:.1e}")
     if chosen.frequency * float(chosen.times[1] - chosen.times[0]) > pi / 2:
-        yield Message("fewer than 4 samples a period of the fastest oscillation: figures deceive; raise --samples")
+        text = (
+            "fewer than 4 samples a period of the fastest oscillation about the initial state: figures may deceive; "
+            "raise --samples"
+        )
+        yield Message(text)
 
 
 def method_lines(run: Simulation) -> Iterator[tuple[str, str]]:

@@ -135,6 +135,12 @@ def test_refusals() -> None:
         exceptional(mbsym.load(SYSTEMS / "rolling-disc.yaml"), "m", interval, {})
     with pytest.raises(NotAlong, match="sum is zero"):
         exceptional(mbsym.load(SYSTEMS / "ziegler.yaml"), "P", interval, dict.fromkeys("mlk", one))
+    linear = mbsym.loads(
+        "mbsym: 1\nname: linear\nparameters: {a: real}\nloads: [potential: a*x**2/2 + y**2]\nmotion: {}\n"
+        "bodies: [{name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}]\n"
+    )
+    with pytest.raises(NotAlong, match="no terms of fourth order"):
+        exceptional(linear, "a", interval, {})
 
 
 def test_the_command(tmp_path: Path) -> None:
