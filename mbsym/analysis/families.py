@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
 
 
-def by_energy_of_more(
+def by_energy_with_fewer_constraints(
     analysis: Analysis, judged: Callable[[System], tuple[Analysis, Verdict]], conserved: bool
 ) -> Verdict | None:
     """The verdict on a rest by its energy where constraints on velocities are left out; None where there are none.

@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.failures import NOT_THERE, Failure
@@ -67,6 +67,7 @@ class Judge:
     def __init__(self, analysis: Analysis, displaces: bool = True) -> None:
         """``displaces``: displacements that change no equation may be taken for coordinates, which is done once."""
         self.analysis, self._displaces = analysis, displaces
+        self._judges: dict[System, Judge] = {}
 
     def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
         return self.decided(self.first_approximation(values), values)
@@ -150,16 +151,16 @@ class Judge:
         """Instability by slow motions along rests near by, or by those of one coordinate."""
         along = families.by_rests_near(self.analysis, values, decaying=False)
         try:
-            return along or families.by_one_coordinate(self.analysis, values, lambda x: self._of(x)(values))
+            return along or families.by_one_coordinate(self.analysis, values, lambda x: self._judge_of(x)(values))
         except (Failure, *NOT_THERE):
             return None
 
     def _by_what_is_near(self, values: Mapping[str, Any]) -> Verdict | None:
         """What rests near by say of one, or its energy without constraints on velocities."""
         decaying = families.by_rests_near(self.analysis, values, decaying=True)
-        return decaying or self._by_energy_of_more(lambda other: other(values), values)
+        return decaying or self._by_energy_with_fewer_constraints(lambda other: other(values), values)
 
-    def _by_energy_of_more(
+    def _by_energy_with_fewer_constraints(
         self, judged: Callable[[Judge], Verdict], values: Mapping[str, Any] | None = None
     ) -> Verdict | None:
         """What the energy says of a rest without constraints on velocities, by the judge of that system."""
@@ -169,16 +170,18 @@ class Judge:
         try:
             balance = of.balance if values is None else of.balance.at(values)
             if families.at_rest(of) and balance.law.bounded:
-                return families.by_energy_of_more(
-                    of, lambda x: (self._of(x).analysis, judged(self._of(x))), balance.conserves
+                return families.by_energy_with_fewer_constraints(
+                    of, lambda x: (self._judge_of(x).analysis, judged(self._judge_of(x))), balance.conserves
                 )
         except (Failure, *NOT_THERE):  # without these constraints there may be no such rest
             return None
         return None
 
-    @cache  # noqa: B019
-    def _of(self, system: System) -> Judge:
-        return Judge(type(self.analysis)(system, (), self.analysis.terms, suggests=False))
+    def _judge_of(self, system: System) -> Judge:
+        """That of another system, made once."""
+        if system not in self._judges:
+            self._judges[system] = Judge(type(self.analysis)(system, (), self.analysis.terms, suggests=False))
+        return self._judges[system]
 
     @cached_property
     def _parts(self) -> list[tuple[list[str], Judge]]:
@@ -271,7 +274,7 @@ class Judge:
             return verdict
         if self._in_others is not None:
             return self._told_in_others(verdict, None)
-        return self._by_energy_of_more(_unconditional) or verdict
+        return self._by_energy_with_fewer_constraints(_unconditional) or verdict
 
     def _told_in_others(self, verdict: Verdict, values: Mapping[str, Any] | None) -> Verdict:
         """What other coordinates say, at values or for all; not where others follow a drift unevenly: rates vary."""
