@@ -128,6 +128,7 @@ def test_free_and_ball_joints_begin_and_are_slowed_as_mujoco_s_are() -> None:
     exec(render(analysis, ()), own.__dict__)  # our own generated module
     model = mujoco.MjModel.from_xml_string(SEVERAL)
     data = mujoco.MjData(model)
+    assert {one.coordinate for one in analysis.system.initial} == {*own.COORDINATES}
     begun = {one.coordinate: float(written(one.position)) for one in analysis.system.initial if one.position}
     begin = np.array([begun.get(name, 0.0) for name in own.COORDINATES])
     mujoco.mj_forward(model, data)

@@ -94,7 +94,7 @@ class _Writer:
     loads: list[str] = field(default_factory=list)
     limits: list[str] = field(default_factory=list)
     inputs: list[str] = field(default_factory=list)
-    initial: list[str] = field(default_factory=list)
+    initial: dict[str, str] = field(default_factory=dict)  # of all coordinates
     constraints: list[str] = field(default_factory=list)
     joints: list[str] = field(default_factory=list)
     still: list[str] = field(default_factory=list)
@@ -132,7 +132,8 @@ class _Writer:
         lines += ["loads:", *self.loads] if self.loads else []
         lines += ["constraints:", *self.constraints] if self.constraints else []
         lines += ["limits:", *self.limits] if self.limits else []
-        lines += ["initial:", *self.initial] if self.initial else []
+        if any(at != "0" for at in self.initial.values()):
+            lines += ["initial:", *(f"  {name}: {at}" for name, at in self.initial.items())]
         return Described("\n".join(lines) + "\n", tuple(self.joints), self.frames, tuple(self.still))
 
     def _told(self) -> str:
@@ -249,6 +250,7 @@ class _Writer:
             and not any(joint.kind == "free" for joint in link.joints)
         ):
             moving.insert(0, Moving(Joint("", "free"), _SEVERAL["free"]))
+            self.initial |= dict.fromkeys(_SEVERAL["free"], "0")
         if any(motion.joint.kind == "free" and motion.joint.start for motion in moving):
             # Its coordinates say where it is, from the ground, whatever frame it stands in.
             place, turned, link = NOWHERE, (), replace(link, parent=GROUND)
@@ -310,7 +312,7 @@ class _Writer:
                 self._load(f"damper: {{coordinate: {first}, coefficient: {joint.damping}{factor}}}")
             return Moving(joint, (), _linear(multiplier, first, offset))
         names = self._coordinates(joint, stem)
-        self.initial += [f"  {q}: {at}" for q, at in zip(names, joint.start, strict=False) if at != "0"]
+        self.initial |= dict(zip(names, joint.start or ("0",) * len(names), strict=True))
         if joint.kind == "planar":
             return Moving(joint, names, names[2])
         return Moving(joint, names, _linear("1", names[0], opposite(joint.ref)) if len(names) == 1 else "")
