@@ -284,7 +284,8 @@ def _in_free_coordinates(path: Path, system: System, command: str, complaints: C
         hint = "choose coordinates that keep it, or write it as  relation: x = r*phi"
         if not is_holonomic(one):
             hint = (
-                "no coordinates keep what ties velocities; 'mbsym integrals' and problems 6 and 7 take it into account"
+                "if it follows from a relation, write that: relation: x = r*phi; no coordinates keep one that does "
+                "not: 'mbsym integrals' and problems 6 and 7 take it into account"
             )
         complaints.error("constraints", Message(words, command=command), one.span, hint)
     if not free.constraints:

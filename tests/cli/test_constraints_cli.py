@@ -55,7 +55,7 @@ def test_relations_are_put_in_where_a_command_knows_no_others(tmp_path: Path) ->
     rolling = "constraints:\n  - velocity: x_dot = r*phi_dot\n"
     done = mbsym("symmetries", written(tmp_path, TEXT.partition("constraints:")[0] + rolling))
     assert done.exit_code == 2
-    assert "no coordinates keep what ties velocities" in " ".join(done.stderr.split())
+    assert "if it follows from a relation, write that: relation: x = r*phi" in " ".join(done.stderr.split())
     assert "wheel.yaml:8:5" in done.stderr
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import fsolve
 
 import mbsym
 from mbsym.algebra.failures import Constrained
@@ -290,8 +291,11 @@ def test_the_result_of_a_description_knows_constraints() -> None:
     assert len(mbsym.loads(SPHERE).equilibria.equilibria) == 2
 
 
-def test_a_five_bar_is_not_solved_exactly_and_says_so() -> None:
-    """Two degrees of freedom.  Each place by d'Alembert with numbers: grad V in the range of J^T, the loop closed."""
+def test_all_rests_of_a_five_bar() -> None:
+    """Two degrees of freedom.  Each place by d'Alembert with numbers: grad V in the range of J^T, the loop closed.
+
+    And as many are reached from many points by the same conditions, w_k (s_k + 9 c_k) + e_k (s_k a - c_k b) = 0.
+    """
     text = (
         FOUR_BAR.replace("C: {positive: true, value: 3/2},", "C: {positive: true, value: 3/2}, E: {value: 2},")
         .replace("loads:", _FIFTH + "loads:")
@@ -301,8 +305,22 @@ def test_a_five_bar_is_not_solved_exactly_and_says_so() -> None:
         )
     )
     found = listed(text, A=2, B=3, C=2, E=3, D=3, gx=1, gy=-9)
-    assert not found.complete
-    assert len(found.equilibria) >= 10
+    assert found.complete
+
+    def conditions(x: Any) -> Any:
+        c, s, (a, b) = np.cos(x[:4]), np.sin(x[:4]), x[4:]
+        signs = np.array([1, 1, -1, -1])
+        moments = np.array([3, 1, 3, 1]) * (s + 9 * c) + signs * (s * a - c * b)
+        sides = signs * np.array([2, 3, 2, 3])
+        return [*moments, sides @ c - 3, sides @ s]
+
+    source, reached = np.random.default_rng(5), set[tuple[float, ...]]()
+    for _ in range(600):
+        start = [*source.uniform(-np.pi, np.pi, 4), *source.normal(0, 20, 2)]
+        x, _, success, _ = fsolve(conditions, start, full_output=True, xtol=1e-13)
+        if success == 1 and np.abs(conditions(x)).max() < 1e-9:
+            reached.add(tuple(np.round(np.concatenate([np.cos(x[:4]), np.sin(x[:4])]), 5) + 0.0))
+    assert len(found.equilibria) == len(reached) == 14
     for one in found.equilibria:
         p, q, s, w = (x.value for x in one.values)
         directions = (p, q, s, s + w)

@@ -37,6 +37,7 @@ from typing import TYPE_CHECKING
 from flint import fmpq_poly
 
 from mbsym.algebra.failures import Constrained
+from mbsym.algebra.krawczyk import certified
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, Solutions, solve
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm
@@ -91,6 +92,8 @@ __all__ = [
 
 #: The size of one interreduction under constraints (four-bars: 600,000): above this one alone may take minutes.
 REDUCTION = 4_000_000
+#: With multipliers among the unknowns (a five-bar has 48 complex rests, 54 elements of a basis, 800 bits).
+WITH_MULTIPLIERS = Limits(elements=120, pairs=1_000, bits=3_000, work=2_000_000)
 #: Of longer equations of steady motions along symmetries the multipliers are not eliminated, but looked for, too.
 MOST_ELIMINATED = 150
 
@@ -335,11 +338,17 @@ def searches_of(
 
 
 def _search_whole(searches: Sequence[_ChartSearch]) -> None:
-    """The positions of all cases in which the constraints have their rank, searched at once by bisection.
+    """The positions of all cases in which the constraints have their rank, at once: by bisection, else exactly.
 
     Where nothing is left open, the list is complete whatever the single cases left out.
     """
     left_open = searches[0].search_whole()
+    if left_open and searches[0].solves_with_multipliers():
+        for search in searches:
+            search.doubts, search.unfinished, search.remarks = [], False, search.remarks[: search.told]
+            if search is not searches[0] and search.case.rank == searches[0].case.rank:
+                search.points = []
+        return
     for search in searches:
         search.doubts, search.unfinished = search.doubts * bool(left_open), False
     searches[0].doubts += left_open
@@ -414,6 +423,8 @@ class _ChartSearch(SearchInBoxes):
     """
 
     is_real = False
+    #: So many remarks are there before it is said what was not finished.
+    told = 0
 
     def run(self) -> None:
         self._conditions()
@@ -424,6 +435,7 @@ class _ChartSearch(SearchInBoxes):
             return
         if self.case.whole:
             self.reason = Message("the equations are too long for their multipliers to be eliminated")
+        self.told = len(self.remarks)
         if self.reason:
             self.remarks.append(Message("no exact solution: [[why]]", why=self.reason))
             self.unfinished = bool(self.rest.rows)  # all cases are searched at once
@@ -480,6 +492,42 @@ class _ChartSearch(SearchInBoxes):
         equations = [table.polynomial(x) for x in self.equations] + table.relations()
         usable = [x for x in self.nonzero if table.holds(x)]
         return table, solve(equations, [table.polynomial(x) for x in usable], table.bounded(), self.limits)
+
+    def solves_with_multipliers(self) -> bool:
+        """Whether all rests where J has its rank are found exactly, with multipliers among the unknowns.
+
+        Shorter equations than those without: no two are multiplied.  At a rest where J has not its rank multipliers are
+        any of a line, a family of solutions; with one nothing is said here.  Each rest is listed as a box: in number
+        fields of such degrees (48) verdicts would take minutes.
+        """
+        square = None if self.reason or self.impossible else self._with_multipliers()
+        if square is None or isinstance(self.rest, Orbits):
+            return False
+        table = Unknowns(self.ring, [*square.equations, *self.singular_where], by_angle=True)
+        held = [x for x in self.nonzero[len(self.case.nonzero) :] if table.holds(x)]
+        told = [*map(table.polynomial, (*square.equations, *held)), *table.relations()]
+        told, changes = table.in_sums_of_angles(told)
+        places = range(len(square.equations), len(square.equations) + len(held))
+        nonzero, equations = [told[k] for k in places], [x for k, x in enumerate(told) if k not in places]
+        found = solve(equations, nonzero, table.bounded(), WITH_MULTIPLIERS)
+        if found.unfinished or found.families:
+            return False
+        boxes = []
+        names, functions = (*square.coordinates, *square.multipliers), square.functions(self.ring)
+        for point in filter(table.roots_agree, found.points):
+            point = table.of_angles(point, changes)
+            exact = dict(zip(table.indices, point.values, strict=True))
+            balls = self._place(table, point).balls | {
+                name: point.enclosure(exact[self.ring.index("prescribed", name)]) for name in square.multipliers
+            }
+            box = certified(*functions, [float(balls[name].mid()) for name in names], PRECISION)
+            if box is None:
+                return False
+            boxes.append(dict(zip(square.coordinates, box, strict=False)))
+        self.points = []
+        for place in boxes:
+            self._add(Place(self.rest, place, {}, None), CERTIFIED)
+        return True
 
     def _solve_exactly(self) -> None:
         table, result = self._solutions()

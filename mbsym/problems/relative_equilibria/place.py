@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import permutations
 from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_poly, fmpz
@@ -134,10 +135,19 @@ class Place:
 # Conditions of rest as integer polynomials in unknowns: sines, cosines, roots, reciprocals, plain coordinates.
 
 
-class Unknowns:
-    """Which generators of the ring are unknowns, and the way into integer polynomials in them."""
+def _turned_back(of: Sequence[Any], sign: int) -> tuple[Any, Any]:
+    """Sine and cosine of B - sign a, of those of B and a."""
+    s, c, sine, cosine = of
+    return s * cosine - sign * c * sine, c * cosine + sign * s * sine
 
-    def __init__(self, ring: Ring, equations: Sequence[Polynomial]) -> None:
+
+class Unknowns:
+    """Which generators of the ring are unknowns, and the way into integer polynomials in them.
+
+    ``by_angle``: cosine and sine of an angle side by side, multipliers behind, in which a basis is found sooner.
+    """
+
+    def __init__(self, ring: Ring, equations: Sequence[Polynomial], by_angle: bool = False) -> None:
         self.ring = ring
         used = set(occurring(equations))
         pending = list(used)
@@ -150,7 +160,7 @@ class Unknowns:
                 more = {ring.index("sine", g.name), ring.index("cosine", g.name)}
             pending += more - used
             used |= more
-        self.indices = sorted(used)
+        self.indices = sorted(used, key=self._by_angle) if by_angle else sorted(used)
         letters = {"sine": "sin", "cosine": "cos"}
         self.names = []
         for k in self.indices:
@@ -162,6 +172,11 @@ class Unknowns:
             else:
                 self.names.append(f"{letters[g.kind]}({name})" if g.kind in letters else name)
         self.context = context([f"x{k}" for k in range(len(self.indices))])
+
+    def _by_angle(self, k: int) -> tuple[bool, int, int]:
+        g = self.ring.generators[k]
+        angle = g.argument is None and g.kind in ("sine", "cosine")
+        return g.kind == "prescribed", self.ring.index("cosine", g.name) if angle else k, int(g.kind == "sine")
 
     def holds(self, x: Polynomial) -> bool:
         return all(k in self.indices for k in occurring([x]))
@@ -201,6 +216,47 @@ class Unknowns:
 
     def bounded(self) -> list[int]:
         return [i for i, k in enumerate(self.indices) if self.ring.generators[k].kind in ("sine", "cosine")]
+
+    def in_sums_of_angles(self, equations: Sequence[Any]) -> tuple[list[Any], list[tuple[int, ...]]]:
+        """The equations with b + a or b - a in place of angles b, where that makes them shorter: links' own directions.
+
+        And what was changed: the places of the sine and cosine of b and of a, and the sign of a.  A sine or cosine of b
+        stands then for that of the sum.
+        """
+        ring, places = self.ring, {k: i for i, k in enumerate(self.indices)}
+        angles = [ring.generators[k] for k in self.indices if ring.generators[k].kind == "sine"]
+        pairs = [
+            (*(places[ring.index(kind, g.name)] for g in (b, a) for kind in ("sine", "cosine")), sign)
+            for b, a in permutations([g for g in angles if g.argument is None], 2)
+            if ring.angles[a.name] == ring.angles[b.name]
+            for sign in (1, -1)
+        ]
+        gens, current = self.context.gens(), list(equations)
+        changes: list[tuple[int, ...]] = []
+        while pairs:
+            tried = []
+            for change in pairs:
+                circle = gens[change[2]] ** 2 + gens[change[3]] ** 2 - 1
+                images = list(gens)
+                images[change[0]], images[change[1]] = _turned_back([gens[k] for k in change[:4]], change[4])
+                tried.append([x if x == circle else divmod(x.compose(*images), circle)[1] for x in current])
+            sizes = [sum(map(len, x)) for x in tried]
+            best = min(range(len(pairs)), key=sizes.__getitem__)
+            if sizes[best] >= sum(map(len, current)):
+                break
+            current = tried[best]
+            changes.append(pairs[best])
+        return current, changes
+
+    @staticmethod
+    def of_angles(point: AlgebraicPoint, changes: Sequence[tuple[int, ...]]) -> AlgebraicPoint:
+        """A solution of those equations as one of the equations before."""
+        values = list(point.values)
+        for *places, sign in reversed(changes):
+            turned = _turned_back([values[k] for k in places], sign)
+            for k, value in zip(places, turned, strict=False):
+                values[k] = value % point.modulus
+        return replace(point, values=tuple(values))
 
     def roots_agree(self, point: AlgebraicPoint) -> bool:
         """Whether every square root is not negative."""
