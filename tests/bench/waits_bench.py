@@ -96,9 +96,8 @@ def long_chains(options: argparse.Namespace) -> Iterator[Line]:
         yield Line(f"chain of {joints}, memory", child.peak_mb, "MB", memory, complaint=child.complaint)
         if before is not None:
             power = math.log(child.cpu / before[1]) / math.log(joints / before[0])
-            yield Line(
-                f"chain of {joints}, power p since {before[0]}", power, "", "1.1" if joints == LENGTHS[-1] else ""
-            )
+            aim = "1.1" if joints == LENGTHS[-1] else ""
+            yield Line(f"chain of {joints}, power of the time since {before[0]}", power, "", aim)
         before = joints, child.cpu
 
 
