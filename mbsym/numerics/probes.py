@@ -22,6 +22,8 @@ from mbsym.algebra.failures import SingularPoint
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, Number, names
 from mbsym.mechanics.variables import angle_denominators
+from mbsym.model.system import velocity_name
+from mbsym.numerics.closing import NotClosed, closed
 from mbsym.numerics.extremes.singular import Singularities, SingularSet
 from mbsym.numerics.scenario import Incomplete, Scenario, exact, scenario
 from mbsym.numerics.trade.digits import Quantity, Truth
@@ -201,7 +203,10 @@ def subject(singular_set: SingularSet, number: int, moving: str) -> str:
 
 
 def motion_state(nominal: Scenario) -> tuple[Fraction, ...] | None:
-    """(q, q') of the unperturbed motion at t = 0; None where the description has none."""
+    """(q, q') of the unperturbed motion at t = 0; None where the description has none.
+
+    Velocities that the motion does not name follow from the constraints where these can be satisfied so.
+    """
     motion = {entry.coordinate: entry for entry in nominal.system.motion}
     if not motion:
         return None
@@ -212,7 +217,13 @@ def motion_state(nominal: Scenario) -> tuple[Fraction, ...] | None:
         rates = [exact(motion[q].rate, nominal.parameters) if q in motion else zero for q in names_]
     except SingularPoint:
         return None
-    return (*at, *rates)
+    named = {velocity_name(name) for name in motion}
+    unstated = tuple(x for x in nominal.system.velocities if x not in named)
+    whole = replace(nominal, positions=tuple(at), velocities=tuple(rates), unstated=unstated)
+    try:
+        return closed(whole, {*names_, *named}).scenario.state
+    except NotClosed:
+        return whole.state
 
 
 def near_equilibrium(nominal: Scenario, units: SceneUnits) -> Iterator[Ladder]:

@@ -344,6 +344,11 @@ def _misplaced_hint(name: str, kind: str, allowed: Allowed) -> str | None:
         return Message("position and velocity stand together: write [[name]]: {position: 0, velocity: 1}", name=name)
     if kind == "table":
         return "a table is called with its argument, as in torque(t)"
+    if kind == "input" and allowed.what in ("a connection point", "a rotation angle"):
+        return (
+            "a coordinate in its place: the other equations hold for every function of the time, x'' a symbol in them, "
+            "and its own gives the force that moves it so; or a formula in t, or a table"
+        )
     if kind == "input":
         return "inputs stand in forces: 'generalized force', 'force', 'torque', and in outputs"
     if kind == "velocity" and allowed is POTENTIAL:

@@ -6,8 +6,11 @@ upper position: two on what the rod allows, not four.
 
 from __future__ import annotations
 
+import cmath
+
 import numpy as np
 import pytest
+from conftest import SHIPPED
 from scipy.integrate import solve_ivp
 
 import mbsym
@@ -58,3 +61,20 @@ def test_the_upper_position_is_held_by_fast_shaking(rate: int, word: Word) -> No
 def test_a_motion_off_the_rod_is_none() -> None:
     with pytest.raises(NotPeriodic):
         found("2*l", 60)
+
+
+def test_velocities_that_the_motion_does_not_name_follow_from_the_constraints() -> None:
+    """A disc that rolls upright and straight on: its lean obeys  5 r lean'' = 4 (g - 3 r w^2) lean  (Appell, Routh)."""
+    told = judged(Dynamics(scenario(mbsym.load(SHIPPED / "rolling-disc.yaml").system)))
+    r, g, w = 0.26, 9.81, 5
+    wobble = cmath.exp(cmath.sqrt(4 * (g - 3 * r * w**2) / (5 * r)) * 2 * cmath.pi / w)
+    middles = [complex(one.ball.mid()) for one in told.multipliers]
+    off = [mu for mu in middles if abs(mu - 1) > 1e-6]
+    assert sorted(mu.imag for mu in off) == pytest.approx(sorted([wobble.imag, -wobble.imag]), abs=1e-9)
+    assert [mu.real for mu in off] == pytest.approx([wobble.real] * 2, abs=1e-9)
+
+
+def test_a_motion_that_exists_is_not_called_none() -> None:
+    """On a circle x and y follow by the constraints, and unevenly: the motion satisfies the equations nevertheless."""
+    with pytest.raises(NotPeriodic, match="follows the unperturbed motion"):
+        judged(Dynamics(scenario(mbsym.load(SHIPPED / "rolling-disc-in-a-circle.yaml").system)))

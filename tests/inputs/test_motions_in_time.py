@@ -105,3 +105,26 @@ def test_both_spellings_and_a_wrong_velocity() -> None:
     assert read(given, "x")[0] is not None
     _, complaints = read(given.replace("2*t/5", "t/5"), "x")
     assert [one.message for one in complaints.items] == ["component 1 is not the derivative of the connection point"]
+
+
+def test_a_coordinate_is_a_free_function_of_time_in_the_equations_of_the_others() -> None:
+    """A cart that moves as x(t): m l (l th'' + g cos th - x'' sin th) = 0, whatever x is (SymPy's issue 8244).
+
+    Said where somebody writes an input in a joint; the shared description with an acceleration a takes a t^2/2.
+    """
+    joint = "mbsym: 1\nname: pendulum on a cart\nparameters: {m: positive, l: positive, g: positive}\nbodies:\n"
+    cart = "  - {name: cart, attached to: 0, connection point: [PLACE, 0, 0], mass: 0}\n"
+    rest = (
+        "  - {name: bob, attached to: cart, rotation: {axes: [3], angles: [th]}, mass centre: [l, 0, 0], mass: m}\n"
+        "loads: [{uniform gravity: {vector: [0, -g, 0]}}]\n"
+    )
+    system, complaints = read(
+        (joint + cart + rest).replace("bodies", "inputs: {a: {}}\nbodies").replace("PLACE", "a*t**2/2")
+    )
+    assert system is None
+    assert "a coordinate in its place" in str(complaints.errors[0].hint)
+    free = mbsym.loads((joint + cart + rest).replace("PLACE", "x").replace("mass: 0", "mass: 0, coordinates: [x]"))
+    row = free.equations.equality(list(free.system.coordinates).index("th"), free.system.coordinates).to_sympy()
+    x = {str(s): s for s in row.free_symbols}
+    by_hand = x["l"] * x["th_ddot"] + x["g"] * sympy.cos(x["th"]) - x["x_ddot"] * sympy.sin(x["th"])
+    assert sympy.simplify(row - x["m"] * x["l"] * by_hand) == 0

@@ -227,11 +227,19 @@ def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
 
 
 def _require_rest(code: Code, dynamics: Dynamics) -> None:
+    system = dynamics.system
+    following = {*system.coordinates} - {entry.coordinate for entry in system.motion} if system.constraints else ()
     with ctx.workprec(BITS):
         for at in (Fraction(0), Fraction(1, 3), Fraction(7, 5), Fraction(29, 7)):
             for name, value in zip(dynamics.system.coordinates, series(code, arb_series([ball(at)])), strict=True):
                 size = abs(_coefficient(value, 0))
                 if not size < ball(AT_REST):
+                    if name in following:
+                        raise NotPeriodic(
+                            "[[name]] follows the unperturbed motion by constraints on velocities, and not evenly: "
+                            "problem 6 judges such motions (mbsym run)",
+                            name=name,
+                        )
                     raise NotPeriodic(
                         "the unperturbed motion is none at these values: at t = [[time]] [[name]] has the "
                         "acceleration [[size]]",
