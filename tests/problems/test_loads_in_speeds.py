@@ -68,10 +68,10 @@ def test_without_unit_vectors_it_is_the_same(load):
 
 
 def test_a_slip_in_the_angles_is_seen(monkeypatch):
-    from mbsym.source import speeds
+    from mbsym.model import substitution
 
-    right = speeds.angular_velocity
-    monkeypatch.setattr(speeds, "angular_velocity", lambda system, body: right(system, body)[::-1])
+    right = substitution.angular_velocity
+    monkeypatch.setattr(substitution, "angular_velocity", lambda system, body: right(system, body)[::-1])
     assert any(one.failed for one in _body("rayleigh: k*p**2/2").checks)
 
 
