@@ -166,12 +166,14 @@ class Judge:
         of = self.analysis
         if not of.system.constraints:
             return None
+
+        def there(system: System) -> tuple[Analysis, Verdict]:
+            return self._of(system).analysis, judged(self._of(system))
+
         try:
             balance = of.balance if values is None else of.balance.at(values)
             if families.at_rest(of) and balance.law.bounded:
-                return families.by_energy_of_more(
-                    of, lambda x: (self._of(x).analysis, judged(self._of(x))), balance.conserves
-                )
+                return families.by_energy_of_more(of, there, values or {}, balance.conserves)
         except (Failure, *NOT_THERE):  # without these constraints there may be no such rest
             return None
         return None
