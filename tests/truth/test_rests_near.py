@@ -143,6 +143,29 @@ def test_where_a_constraint_makes_it_run_nothing_rests(row: str, wanted: Word | 
     assert found.open or found is Word.UNSTABLE if wanted is None else found is wanted
 
 
+@pytest.mark.parametrize(
+    ("potential", "row", "motion", "wanted"),
+    [
+        # y'' = -y: the integral of y is bounded, and so is x
+        ("(x**2 + y**2 + z**2)/2", "x_dot = y", "x: 0", (Word.STABLE,)),
+        ("(y**2 + z**2)/2", "2*x_dot = 3", "x: {rate: 3/2}", (Word.STABLE,)),
+        # z'' = -z, y'' = 0: y = v t, and x' = v t is no velocity that stays near its own
+        ("z**2/2", "x_dot = y", "x: 0", (Word.UNDECIDED, Word.UNSTABLE)),
+    ],
+)
+def test_what_a_constraint_makes_run_drifts_where_its_rate_has_a_mean(
+    potential: str, row: str, motion: str, wanted: tuple[Word, ...]
+) -> None:
+    text = TIED.replace("V, FORCE", potential).replace("ROW", row).replace("x: 0", motion)
+    assert word(text) in wanted
+
+
+def test_what_comes_to_rest_elsewhere_leaves_what_runs_with_it_running() -> None:
+    """y'' = -y', x' = y: x' does not tend to 0 again."""
+    text = TIED.replace("V, FORCE", "z**2/2, rayleigh: (y_dot**2 + z_dot**2)/2").replace("ROW", "x_dot = y")
+    assert word(text) is Word.STABLE_BUT_CYCLIC
+
+
 VALLEY = """
 mbsym: 1
 name: valley
