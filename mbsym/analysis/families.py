@@ -1,7 +1,8 @@
 """Rests that are judged by what is near them: a manifold of rests, or the energy of the system with fewer constraints.
 
-At rest the velocities that constraints leave obey  e(q) = Y^T f(q, 0) = 0.  Where r of these equations have independent
-gradients at a rest, and the others are combinations of them, the rests near by are a manifold of dimension n - r.
+At rest the velocities that constraints J q' + j = 0 leave obey  Y^T f(q, 0) = 0,  and j(q) = 0.  Where r of these
+equations have independent gradients at a rest, and the others are combinations of them, the rests near by are a
+manifold of dimension n - r.
 
 Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), chapter V; I. G. Malkin, Theory of
 Stability of Motion, section 34; H. Rubin, P. Ungar, Comm. Pure Appl. Math. 10 (1957) 65-87.
@@ -9,7 +10,7 @@ Stability of Motion, section 34; H. Rubin, P. Ungar, Comm. Pure Appl. Math. 10 (
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import combinations
@@ -44,13 +45,17 @@ if TYPE_CHECKING:
 
 
 def by_energy_with_fewer_constraints(
-    analysis: Analysis, judged: Callable[[System], tuple[Analysis, Verdict]], conserved: bool
+    analysis: Analysis,
+    judged: Callable[[System], tuple[Analysis, Verdict]],
+    values: Mapping[str, Any],
+    conserved: bool,
 ) -> Verdict | None:
     """The verdict on a rest by its energy where constraints on velocities are left out; None where there are none.
 
     Rows J q' = 0 do no work: an energy that does not grow without them does not grow with them.  What may drift without
-    them has to be free to do so with them, too, and not to be stopped: the energy is ``conserved``.  ``judged`` gives
-    the analysis of another system, and its verdict.
+    them has to be free to do so with them, too, and not to be stopped: the energy is ``conserved``.  Constant momenta
+    may have carried a minimum with gyroscopic forces, which reactions change.  ``judged`` gives the analysis of another
+    system, and its verdict.
     """
     system = analysis.system
     holonomic = tuple(filter(is_holonomic, system.constraints))
@@ -63,30 +68,30 @@ def by_energy_with_fewer_constraints(
     reasons = Reason(Because.FEWER_CONSTRAINTS), Reason(Because.DRIFT)
     if Flaw.CYCLIC not in verdict.flawed:
         return Verdict(Word.STABLE, (LAGRANGE,), reasons[:1])
-    if system.prescribed or not conserved or not (Ground.IDLE in verdict.laid or _drifts(analysis, there)):
+    if system.prescribed or not conserved or _gyroscopic(there, values):
+        return None
+    if Ground.IDLE not in verdict.laid and not _drifts(analysis, there):
         return None
     return Verdict(Word.STABLE_BUT_CYCLIC, (LAGRANGE,), reasons)
 
 
 def _drifts(analysis: Analysis, there: Analysis) -> bool:
-    """Whether constraints allow one of the symmetric displacements D of a rest: rank(J D^T) < rank(D)."""
+    """Whether constraints allow a symmetric displacement everywhere: J (c . D) = 0 for some numbers c.
+
+    Then its momentum is constant (Noether), whatever it is.  At the rest alone it is not enough: y' = x x' bends x up.
+    """
     ring = there.ring
     place = unperturbed_with(there.scene, relations(there.scene))
     carry = Carrier(analysis.ring, ring, ring_environment(there.system, ring))
-
-    def at(x: Polynomial) -> Polynomial:
-        return ring.reduce(ring.substitute(x, place))
-
-    fields = [list(map(at, one)) for one in there.balance.symmetries(there.system.coordinates).directions]
-    rows = [[at(carry(x)) for x in row] for row in analysis.constraints.jacobian.polynomials]
-    held = [[ring.dot(row, one) for one in fields] for row in rows]
-
-    def deficient(table: Sequence[Sequence[Polynomial]]) -> bool | None:
-        chosen = combinations(table, len(fields))
-        zeros = [ring.is_zero(ring.reduce(determinant(ring, [list(row) for row in some]))) for some in chosen]
-        return None if None in zeros else all(zeros)
-
-    return bool(fields) and deficient(list(zip(*fields, strict=True))) is False and deficient(held) is True
+    fields = there.balance.symmetries(there.system.coordinates).directions
+    rows = [[carry(x) for x in row] for row in analysis.constraints.jacobian.polynomials]
+    held = [[ring.reduce(ring.dot(row, one)).to_dict() for row in rows] for one in fields]
+    terms = sorted({(r, key) for one in held for r, x in enumerate(one) for key in x})
+    if not fields or fmpq_mat([[one[r].get(key, 0) for r, key in terms] for one in held]).rank() == len(fields):
+        return False
+    at_rest = [[ring.reduce(ring.substitute(x, place)) for x in one] for one in fields]
+    chosen = combinations(zip(*at_rest, strict=True), len(fields))
+    return any(ring.is_zero(ring.reduce(determinant(ring, list(map(list, some))))) is False for some in chosen)
 
 
 def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool) -> Verdict | None:
@@ -117,7 +122,7 @@ def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool)
             return concluded({Fact.LEFT_BUT_STEADY}) if left else None
         conserved = not system.constraints and analysis.balance.at(values).conserves
         across = n.rank() == 0 and _positive(k, len(rests.equations))
-        if conserved and across and not _gyroscopic(analysis) and rests.varies(_change(analysis, rests)):
+        if conserved and across and not _gyroscopic(analysis, values) and rests.varies(_change(analysis, rests)):
             facts = {Fact.MINIMUM_ACROSS_RESTS, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED}
             return concluded(facts, Reason(Because.ALONG_RESTS, (rests.dimension,)))
     except (Failure, *NOT_THERE):
@@ -162,12 +167,12 @@ def at_rest(analysis: Analysis) -> bool:
     return not base.turning and all(x.is_zero() for x in base.rates)
 
 
-def _gyroscopic(analysis: Analysis) -> bool:
+def _gyroscopic(analysis: Analysis, values: Mapping[str, Any]) -> bool:
     """Whether there may be forces that hang on velocities, but for those of T_2."""
-    ring, names = analysis.ring, analysis.system.coordinates
+    ring, names, numbers = analysis.ring, analysis.system.coordinates, dict(_at_values(analysis, values)[0])
     applied = generalized_forces(analysis.held_scene).values()
     slopes = (ring.velocity_derivative(x, name) for x in applied for name in names)
-    return not all(map(ring.vanishes, (*momenta_at_rest(analysis), *slopes)))
+    return not all(ring.vanishes(ring.substitute(x, numbers)) for x in (*momenta_at_rest(analysis), *slopes))
 
 
 @dataclass(frozen=True)
@@ -257,7 +262,7 @@ def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
     if system.constraints:
         if equations.embedded is None:
             return None
-        forces = equations.embedded.forcing
+        forces = (*equations.embedded.forcing, *analysis.constraints.velocity)
     numbers, place = _at_values(analysis, values)
     found = _Rests(ring, system.coordinates, numbers, place)
     still = {ring.index("velocity", name): ring.zero for name in system.coordinates}

@@ -167,12 +167,14 @@ class Judge:
         of = self.analysis
         if not of.system.constraints:
             return None
+
+        def there(system: System) -> tuple[Analysis, Verdict]:
+            return self._judge_of(system).analysis, judged(self._judge_of(system))
+
         try:
             balance = of.balance if values is None else of.balance.at(values)
             if families.at_rest(of) and balance.law.bounded:
-                return families.by_energy_with_fewer_constraints(
-                    of, lambda x: (self._judge_of(x).analysis, judged(self._judge_of(x))), balance.conserves
-                )
+                return families.by_energy_with_fewer_constraints(of, there, values or {}, balance.conserves)
         except (Failure, *NOT_THERE):  # without these constraints there may be no such rest
             return None
         return None

@@ -13,8 +13,8 @@ With T in u alone and p = dT/du = M u + A1 it is the same H, on the manifold of 
 where u = S q' + s0 and C = W dH/dp and what moves as prescribed.  C = 0 where u are velocities of coordinates and the
 constraints are integrable (the fields Y_a commute): the equations are canonical then, Dirac's bracket in independent
 variables.  In speeds they are Poincare's and Chetaev's (of a body about a fixed point those of Lie and Poisson).  Where
-constraints are not integrable H is kept as it is elsewhere, but {,} violates Jacobi's identity (van der Schaft and
-Maschke).  C is not derived by itself: p' = f + dp/dt at u' = 0, of M u' = f.
+constraints are not integrable {,} violates Jacobi's identity (van der Schaft and Maschke); H is kept as it is elsewhere
+where y0 = 0.  C is not derived by itself: p' = f + dp/dt at u' = 0, of M u' = f.
 
 (H is the generalised energy T_2 - T_0 - U.)  Where L does not contain the
 coordinates c and no other force acts on them, their momenta beta are constants.  Routh's function of the others, s, is

@@ -161,6 +161,13 @@ class ConstrainedBalance(Balance):
     def _velocity_rows(self) -> tuple[Polynomial, ...]:
         return tuple(row.velocity for row in self._rows or ())
 
+    @property
+    def uneven(self) -> bool:
+        """Whether constraints make velocities hang on places: j of the rows J q' + j does."""
+        ring, names = self.ring, self.scene.system.coordinates
+        still = {ring.index("velocity", name): ring.zero for name in names}
+        return any(ring.dependencies(ring.substitute(row, still), names) for row in self._velocity_rows)
+
     @cached_property
     def exactly_linear(self) -> bool:
         """Whether the open tree's equations and the rows are, and with them the equations of what is independent."""

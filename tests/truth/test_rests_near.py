@@ -98,6 +98,74 @@ def test_what_constraints_hold_does_not_drift(more: str) -> None:
     assert found is Word.STABLE_BUT_CYCLIC if not more else found in (Word.STABLE, Word.CRITICAL, Word.UNDECIDED)
 
 
+TIED = """
+mbsym: 1
+name: tied
+bodies:
+  - {name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}
+loads: [potential: V, FORCE]
+constraints: [velocity: ROW]
+motion: {x: 0, y: 0, z: 0}
+"""
+MAGNETIC = "generalized force: {x: 3*y_dot, y: -3*x_dot}"
+
+
+@pytest.mark.parametrize(
+    ("potential", "force", "row", "drifts"),
+    [
+        # At z = e, y = 0 it rests, and near that y""" + 8 y' = 24 e y: y grows, and z' = y x' with it
+        ("4*z**2 - y**2/2", MAGNETIC, "z_dot = y*x_dot", False),
+        # z is a cosine, y = x^2/2 + int z dx stays small with T + y^2/2, and so does x
+        ("(y**2 + z**2)/2", "rayleigh: 0*x_dot", "y_dot = (x + z)*x_dot", False),
+        # (1, 1, 0) is allowed wherever it is: x' + y' is constant
+        ("z**2/2", "rayleigh: 0*x_dot", "x_dot = y_dot + y*z*z_dot", True),
+    ],
+)
+def test_reactions_change_momenta_and_bend_what_drifts(potential: str, force: str, row: str, drifts: bool) -> None:
+    found = word(TIED.replace("V,", f"{potential},").replace("FORCE", force).replace("ROW", row))
+    assert found is Word.STABLE_BUT_CYCLIC if drifts else found.open
+
+
+@pytest.mark.parametrize(
+    ("row", "wanted"),
+    [
+        # y'' = -y': y tends to another place, and x runs there, however near that is
+        ("x_dot = y", None),
+        ("x_dot = y**2", None),
+        ("x_dot = y**2 + y*z_dot", None),
+        ("x_dot = x**3", None),  # no other x is a rest
+        ("x_dot = y*z", Word.ASYMPTOTIC_BUT_STEADY),  # z decays: x and y end where they do
+    ],
+)
+def test_where_a_constraint_makes_it_run_nothing_rests(row: str, wanted: Word | None) -> None:
+    text = TIED.replace("V,", "z**2*(1 + x**2)/2,").replace("FORCE", "rayleigh: (y_dot**2 + z_dot**2)/2")
+    found = word(text.replace("ROW", row))
+    assert found.open or found is Word.UNSTABLE if wanted is None else found is wanted
+
+
+@pytest.mark.parametrize(
+    ("potential", "row", "motion", "wanted"),
+    [
+        # y'' = -y: the integral of y is bounded, and so is x
+        ("(x**2 + y**2 + z**2)/2", "x_dot = y", "x: 0", (Word.STABLE,)),
+        ("(y**2 + z**2)/2", "2*x_dot = 3", "x: {rate: 3/2}", (Word.STABLE,)),
+        # z'' = -z, y'' = 0: y = v t, and x' = v t is no velocity that stays near its own
+        ("z**2/2", "x_dot = y", "x: 0", (Word.UNDECIDED, Word.UNSTABLE)),
+    ],
+)
+def test_what_a_constraint_makes_run_drifts_where_its_rate_has_a_mean(
+    potential: str, row: str, motion: str, wanted: tuple[Word, ...]
+) -> None:
+    text = TIED.replace("V, FORCE", potential).replace("ROW", row).replace("x: 0", motion)
+    assert word(text) in wanted
+
+
+def test_what_comes_to_rest_elsewhere_leaves_what_runs_with_it_running() -> None:
+    """y'' = -y', x' = y: x' does not tend to 0 again."""
+    text = TIED.replace("V, FORCE", "z**2/2, rayleigh: (y_dot**2 + z_dot**2)/2").replace("ROW", "x_dot = y")
+    assert word(text) is Word.STABLE_BUT_CYCLIC
+
+
 VALLEY = """
 mbsym: 1
 name: valley

@@ -169,14 +169,15 @@ def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     verdict = _verdict_over(system, at)
     if system.exact and verdict.roots is not None:
         verdict = replace(verdict, verdict=_of_linear_equations(system, at, verdict.verdict))
-    return replace(verdict, verdict=on_the_motion(system, verdict.verdict))
+    zeros = 0 if verdict.roots is None else verdict.roots.zero
+    return replace(verdict, verdict=on_the_motion(system, verdict.verdict, zeros))
 
 
-def on_the_motion(system: LinearSystem, verdict: Verdict) -> Verdict:
-    """What a verdict on the coordinates of the matrices means for the motion: others may be outside."""
+def on_the_motion(system: LinearSystem, verdict: Verdict, zeros: int) -> Verdict:
+    """What a verdict on the coordinates of the matrices, by so many zero roots, means: others may be outside."""
     verdict = displaced(verdict, system.basis)
     if system.exact and system.nonholonomic is not None:
-        verdict = nonholonomic.besides_outside(system.nonholonomic, verdict)
+        verdict = nonholonomic.besides_outside(system.nonholonomic, verdict, zeros)
     return off_the_leaf(verdict) if system.leaf else verdict
 
 

@@ -20,10 +20,10 @@ class NonholonomicForm:
     ``idle`` are indices of coordinates that do not occur in the nonlinear equations, their columns in K + N vanish;
     ``family``: in so many dimensions the steady motions of the subsystem lie near the given one.  ``drifts``: the whole
     system has coordinates that drop out; ``open_names`` are those not shown to drop out in all orders, ``outside``:
-    some of them are in no subsystem, as their velocities are dependent.  ``following`` are indices of coordinates whose
-    rows are of first order, those of M zero.  ``pairs``: where the velocities follow one position along every motion,
-    w' = q' A(q, w) and q'' = F(q, q'^2, w), how many pairs of roots that leaves to the subsystem besides zero roots: 1
-    in that of q, 0 in others; None where the equations are not so.
+    some of them are in no subsystem, as their velocities are dependent, and hang on places.  ``following`` are
+    indices of coordinates whose rows are of first order, those of M zero.  ``pairs``: where the velocities follow
+    one position along every motion, w' = q' A(q, w) and q'' = F(q, q'^2, w), how many pairs of roots that leaves to
+    the subsystem besides zero roots: 1 in that of q, 0 in others; None where the equations are not so.
     """
 
     idle: tuple[int, ...] = ()

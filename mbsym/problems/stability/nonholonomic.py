@@ -45,14 +45,17 @@ def all_left(form: NonholonomicForm, zeros: int) -> Verdict:
     return undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
 
 
-def besides_outside(form: NonholonomicForm, verdict: Verdict) -> Verdict:
+def besides_outside(form: NonholonomicForm, verdict: Verdict, zeros: int) -> Verdict:
     """A verdict on exactly linear equations, where coordinates in none of them may drift away.
 
-    x1' = -a x2: where x2 stays near a place that is not zero, x1 grows with the time.
+    x1' = -a x2: where x2 stays near a place that is not zero, or ends there, x1 grows with the time.  Without
+    ``zeros``, roots that are zero, there is none: x' = A x has the integral A^-1 x.  Where x2 drifts x1' may grow.
     """
-    if not form.outside or verdict.word is not Word.STABLE:
+    if not (form.outside and zeros and verdict.stable):
         return verdict
-    return drifting(verdict, constant_momenta=False)
+    if verdict.word is Word.STABLE_BUT_CYCLIC:
+        return undecided(Because.JORDAN_BLOCK)
+    return drifting(bounded({Fact.EXACTLY_LINEAR}), constant_momenta=False)
 
 
 def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:

@@ -324,7 +324,7 @@ def _by_enclosures(
         verdict = exactly(verdict) if exact else verdict
     else:
         verdict = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
-    return on_the_motion(system, verdict)
+    return on_the_motion(system, verdict, theory.zero_power)
 
 
 def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, balance: Balance) -> SubsystemStability:
@@ -402,10 +402,12 @@ def prepared_parts(
     from mbsym.problems.constrained_balance import ConstrainedBalance  # most systems have no constraints
 
     about, free = linear.constrained, equilibrium.satisfied
-    outside = not {*about.idle} <= {name for part in prepared for name in part.coordinates}
+    inside = {name for part in prepared for name in part.coordinates}
+    uneven = isinstance(balance, ConstrainedBalance) and balance.uneven
+    outside = uneven and not inside.issuperset(about.idle)
     steady = [_steady_directions(part, about.idle) for part in prepared]
     known = free and isinstance(balance, ConstrainedBalance) and sum(steady) == balance.steady
-    if isinstance(balance, ConstrainedBalance) and not any(balance.oscillating in x.coordinates for x in prepared):
+    if isinstance(balance, ConstrainedBalance) and (uneven or balance.oscillating not in inside):
         balance = replace(balance, oscillating="")  # what drops out of the first approximation is no centre
     forms = (
         _form(part, balance, about, signs, free, outside, at_least=directions if known else 0)

@@ -200,8 +200,10 @@ def analyse(
         theory = replace(theory, cases=cases, verdict=verdict)
     theory = replace(
         theory,
-        cases=tuple(replace(case, verdict=on_the_motion(system, case.verdict)) for case in theory.cases),
-        verdict=on_the_motion(system, theory.verdict),
+        cases=tuple(
+            replace(case, verdict=on_the_motion(system, case.verdict, theory.zero_power)) for case in theory.cases
+        ),
+        verdict=on_the_motion(system, theory.verdict, theory.zero_power),
     )
     return theory if point is None else replace(theory, at_point=verdict_at(system, point))
 

@@ -117,9 +117,8 @@ def _meaning(hamilton: Hamilton, tied: bool) -> Iterator[Said]:
     )
     if hamilton.integrable is False:
         yield Said(
-            "The constraints are not integrable: the energy is kept or lost as in Hamilton's equations, but the rates "
-            "of the momenta may have terms that are of the constraints alone, and Poisson brackets would violate "
-            "Jacobi's identity."
+            "The constraints are not integrable: the rates of the momenta may have terms that are of the constraints "
+            "alone, and Poisson brackets would violate Jacobi's identity."
         )
     elif hamilton.integrable is None:
         yield Said("Whether the constraints are integrable is undecided; the equations hold in any case.")
