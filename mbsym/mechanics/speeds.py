@@ -36,7 +36,7 @@ from mbsym.mechanics import frames as quaternions
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
 from mbsym.mechanics.motion import places, vanishing
-from mbsym.mechanics.variables import program_environment, ring_environment
+from mbsym.mechanics.variables import program_environment, rate_of, ring_environment
 from mbsym.model.speeds import OMEGA, Quaternion, Speed, UnitVector
 from mbsym.model.system import Body, System, acceleration_name, velocity_name
 
@@ -312,13 +312,9 @@ class SpeedForm:
     def drift(self, x: Polynomial) -> Polynomial:
         """dx/dt at u' = 0."""
         ring = self.ring
-        total = ring.derivative(x, "t")
-        for name in ring.dependencies(x, [position.name for position in self.positions]):
-            total = total + ring.times(ring.derivative(x, name), self.rates[name])
-        lower = Lowering(ring, self._plain)
-        for item in self.system.prescribed:
-            total = total + ring.times(ring.derivative(x, item.name), lower(item.rate))
-        return ring.reduce(total)
+        moving = ring.dependencies(x, [position.name for position in self.positions])
+        running = ((name, self.rates[name]) for name in moving)
+        return rate_of(ring, Lowering(ring, self._plain), self.system, x, running)
 
     # --- relations ---------------------------------------------------------------------------------------------------
 

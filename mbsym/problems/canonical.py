@@ -66,7 +66,7 @@ from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
 from mbsym.mechanics.speed_states import all_slopes, completed, variables
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.states import Oracles
-from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.mechanics.variables import rate_of, ring_environment, ring_of
 from mbsym.model.momenta import denominator_names, momentum_names
 from mbsym.model.system import acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, FAILED, HOW_EQUAL, Check, Pair, compare, extent, how_equal
@@ -369,12 +369,8 @@ def routh(own: Independent, terms: int) -> Routh:
     lower = Lowering(ring, ring_environment(system, ring))
     forcing = []
     for name, momentum in zip(left, slopes, strict=True):
-        rate = ring.derivative(momentum, "t")
-        for item in system.prescribed:
-            rate = rate + ring.times(lower(item.rate), ring.derivative(momentum, item.name))
-        for other, velocity in moving_as.items():
-            rate = rate + ring.times(velocity, ring.derivative(momentum, other))
-        forcing.append(ring.reduce(ring.substitute(applied[name], back) + slope(function, name) - ring.reduce(rate)))
+        rate = rate_of(ring, lower, system, momentum, moving_as.items())
+        forcing.append(ring.reduce(ring.substitute(applied[name], back) + slope(function, name) - rate))
     rest_of = {ring.index("velocity", name): ring.zero for name in left}
     return Routh(
         ignored=ignored,

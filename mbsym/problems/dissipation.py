@@ -52,7 +52,7 @@ from mbsym.mechanics.frames import forward
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS, generalized_forces
 from mbsym.mechanics.motion import motion_values, relations, turning, unperturbed_with
-from mbsym.mechanics.variables import expressions
+from mbsym.mechanics.variables import expressions, rate_of
 from mbsym.model.loads import (
     Load,
 )
@@ -387,10 +387,7 @@ class Balance:
         ring, system = self.scene.ring, self.scene.system
 
         def changed(x: Polynomial) -> Polynomial:
-            total = ring.derivative(x, "t")
-            for item in system.prescribed:
-                total = total + ring.times(ring.derivative(x, item.name), self.scene.lower(item.rate))
-            return self._put(ring.reduce(total))
+            return self._put(rate_of(ring, self.scene.lower, system, x))
 
         try:
             left = changed(self._lagrangian)
