@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from itertools import combinations
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -204,6 +203,13 @@ class _Rests:
         self.slopes.append(own)
         return True
 
+    def numerator(self, x: Polynomial) -> Polynomial:
+        """Of x at the numbers.  Raises NotRational where the denominator vanishes at the rest."""
+        top, below = self.ring.fraction(self.ring.reduce(self.ring.substitute(x, self.numbers)))
+        if not all(self.at(factor) for factor, _ in below):
+            raise NotRational("a derivative has no exact value")
+        return top
+
     def vanishing_part(self, x: Polynomial) -> Polynomial:
         """x without the factors that differ from 0 at the rest."""
         factors = irreducible_factors(x)[1] if x else [(x, 1)]
@@ -235,11 +241,7 @@ def _at_values(
 ) -> tuple[Mapping[int, Polynomial], Mapping[int, Polynomial]]:
     """What parameters, and then coordinates, are at the rest."""
     ring = analysis.ring
-    numbers = {
-        ring.index("parameter", name): ring.number(x)
-        for name, x in values.items()
-        if isinstance(x, Fraction) and ring.has("parameter", name)
-    }
+    numbers = ring.given(values)
     return numbers, unperturbed_with(analysis.scene, relations(analysis.scene) | numbers)
 
 
@@ -260,13 +262,7 @@ def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
         forces = equations.embedded.forcing
     numbers, place = _at_values(analysis, values)
     found = _Rests(ring, system.coordinates, numbers, place)
-    still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
-    parts = []
-    for force in forces:
-        top, below = ring.fraction(ring.reduce(ring.substitute(force.polynomial, still | dict(numbers))))
-        if not all(found.at(factor) for factor, _ in below):
-            return None
-        parts.append(found.vanishing_part(top))
+    parts = [found.vanishing_part(found.numerator(ring.at_rest(force.polynomial))) for force in forces]
     for x in [x for x in sorted(parts, key=len) if not found.takes(x)]:
         for equation in found.equations:
             x = divmod(x, equation)[1]
@@ -277,20 +273,16 @@ def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
 
 def _change(analysis: Analysis, rests: _Rests) -> Polynomial:
     """What vanishes where tr(M^-1 K) is what it is at the rest, as it is at all rests that are alike."""
-    ring, names, numbers = rests.ring, rests.names, dict(rests.numbers)
+    ring, numbers = rests.ring, rests.numbers
     mass = [[ring.substitute(x, numbers) for x in row] for row in analysis.equations.mass_matrix.polynomials]
-    still = numbers | {ring.index("velocity", name): ring.zero for name in names}
-    forces = [ring.substitute(x.polynomial, still) for x in analysis.equations.forcing]
+    forces = [ring.substitute(ring.at_rest(x.polynomial), numbers) for x in analysis.equations.forcing]
     whole = determinant(ring, mass)
     trace = ring.zero
-    for k, name in enumerate(names):
+    for k, name in enumerate(rests.names):
         column = [ring.derivative(f, name) for f in forces]
         replaced = [[*row[:k], x, *row[k + 1 :]] for row, x in zip(mass, column, strict=True)]
         trace = ring.reduce(trace + determinant(ring, replaced))
-    top, below = ring.fraction(ring.reduce(trace * rests.at(whole) - whole * rests.at(trace)))
-    if not all(rests.at(factor) for factor, _ in below):
-        raise NotRational("a derivative has no exact value")
-    return top
+    return rests.numerator(trace * rests.at(whole) - whole * rests.at(trace))
 
 
 def _positive(k: fmpq_mat, rank: int) -> bool:

@@ -122,10 +122,9 @@ def _acting(analysis: Analysis) -> Iterator[Polynomial]:
 
 def momenta_at_rest(analysis: Analysis) -> Iterator[Polynomial]:
     """dT/dq' at q' = 0, whose changes are gyroscopic forces."""
-    ring, names = analysis.ring, analysis.system.coordinates
-    still = {ring.index("velocity", name): ring.zero for name in names}
-    for name in names:
-        yield ring.substitute(ring.velocity_derivative(analysis.energy.kinetic_energy.polynomial, name), still)
+    kinetic = analysis.energy.kinetic_energy.polynomial
+    for name in analysis.system.coordinates:
+        yield analysis.ring.at_rest(analysis.ring.velocity_derivative(kinetic, name))
 
 
 def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
@@ -139,9 +138,7 @@ def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
     ring, tied, embedded = analysis.ring, analysis.constraints, analysis.equations.embedded
     if tied.solved is None or tied.in_speeds or embedded is None:
         return False
-    numbers = {
-        ring.index("parameter", name): ring.number(x) for name, x in values.items() if ring.has("parameter", name)
-    }
+    numbers = ring.given(values)
 
     def at(x: Polynomial) -> Polynomial:
         return ring.reduce(ring.substitute(x, numbers))

@@ -81,8 +81,7 @@ class SpeedForm:
         named = [speed for speed in system.speeds if speed.name not in known]
         forms = self._forms(named, self._given(ring, self._plain, only_vectors=True))
         rows = [[ring.velocity_derivative(x, name) for name in self.coordinates] for x in forms]
-        still = {ring.index("velocity", name): ring.zero for name in self.coordinates}
-        drifts = [ring.substitute(x, still) for x in forms]
+        drifts = [ring.at_rest(x) for x in forms]
         chosen = self._chosen(rows)
         #: Where it vanishes the speeds do not determine the velocities that they replace.
         self.determinant = determinant(ring, [[row[k] for k in chosen] for row in rows])
@@ -112,8 +111,7 @@ class SpeedForm:
     @cached_property
     def drifts(self) -> list[Polynomial]:
         """s0: the speeds of a system whose coordinates and relative orientations stand still."""
-        still = {self.ring.index("velocity", name): self.ring.zero for name in self.coordinates}
-        return [self.ring.substitute(x, still) for x in self._in_velocities]
+        return [self.ring.at_rest(x) for x in self._in_velocities]
 
     @cached_property
     def _in_velocities(self) -> list[Polynomial]:

@@ -214,8 +214,7 @@ class _Analysis:
 
     def _check_freedom(self, independent: Sequence[int]) -> None:
         """Raises Unsound where nothing can move, and nothing is moved either."""
-        still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
-        if len(independent) < self.n or any(self.ring.substitute(row.velocity, still) for row in self.rows):
+        if len(independent) < self.n or any(self.ring.at_rest(row.velocity) for row in self.rows):
             return
         message = "the constraints leave no freedom: nothing can move"
         hint = "leave one of them out"
@@ -249,8 +248,7 @@ class _Analysis:
         points, independent = self.independent_rows()
         pivots = self._chosen(independent, points)
         jacobian = [row.partials for row in self.rows]
-        still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
-        shifts = [self.ring.substitute(row.velocity, still) for row in self.rows]
+        shifts = [self.ring.at_rest(row.velocity) for row in self.rows]
         at_rest = {self.ring.index("acceleration", name): self.ring.zero for name in self.system.coordinates}
         gammas = [self.ring.substitute(row.acceleration, at_rest) for row in self.rows]
         sides = list(zip(shifts, gammas, strict=True))
