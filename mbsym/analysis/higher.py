@@ -14,9 +14,8 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.point import Rationals
-from mbsym.analysis.approximation import kept_by_velocities
+from mbsym.analysis.approximation import kept_by_velocities, refuse_unsolved
 from mbsym.analysis.poles import pole
-from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, names
 from mbsym.formulas.formula import Formula
@@ -46,9 +45,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     analysis = analysis.in_free_coordinates
     equilibrium, scene = analysis.equilibrium, analysis.parameters_scene
     analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
-    if len(equilibrium.conditions) > len(equilibrium.solved):
-        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
-        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    refuse_unsolved(equilibrium)
     values = stability.parameter_values(scene, equilibrium)
     nothing = Why.NONE
     if values is not None:
