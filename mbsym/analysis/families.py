@@ -21,7 +21,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
-from mbsym.algebra.matrices import determinant, leading_determinants
+from mbsym.algebra.matrices import determinant, leading_determinants, reduced_rows
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.roots import counted
 from mbsym.analysis.higher import momenta_at_rest
@@ -227,13 +227,11 @@ class _Rests:
         They are a plane of coordinates, or the zeros of one irreducible polynomial.
         """
         ring = self.ring
-        reduced, rank = fmpq_mat(self.slopes).rref()
-        pivots = [next(j for j in range(len(self.names)) if reduced[r, j] != 0) for r in range(rank)]
-        plane = self.plane([self.names[j] for j in pivots])
+        plane = self.plane([self.names[j] for j in reduced_rows(fmpq_mat(self.slopes))])
         if all(ring.vanishes(ring.substitute(equation, plane)) for equation in self.equations):
             return ring.is_zero(ring.reduce(ring.substitute(x, plane))) is False
         plain = {ring.generators[k].kind for k in occurring([x, *self.equations])} <= {"coordinate"}
-        return plain and rank == 1 and divmod(x, self.equations[0])[1] != 0
+        return plain and len(self.slopes) == 1 and divmod(x, self.equations[0])[1] != 0
 
 
 def _at_values(
@@ -287,9 +285,6 @@ def _change(analysis: Analysis, rests: _Rests) -> Polynomial:
 
 def _positive(k: fmpq_mat, rank: int) -> bool:
     """Whether K is positive semidefinite of this rank: so on the columns of its pivots."""
-    reduced, found = k.rref()
-    if found != rank:
-        return False
-    pivots = [next(j for j in range(k.ncols()) if reduced[r, j] != 0) for r in range(rank)]
+    pivots = reduced_rows(k)
     block = [[k[i, j] for j in pivots] for i in pivots]
-    return all(minor > 0 for minor in leading_determinants(fmpq_mat, block))
+    return len(pivots) == rank and all(minor > 0 for minor in leading_determinants(fmpq_mat, block))

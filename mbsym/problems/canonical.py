@@ -62,8 +62,8 @@ from mbsym.expressions.message import Message, joined, worded
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
-from mbsym.mechanics.speed_states import all_slopes, completed, variables
+from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.speed_states import all_slopes, completed, in_time
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import rate_of, ring_environment, ring_of
@@ -523,8 +523,7 @@ def check_hamilton(
         return not canonical.plain or name in chosen.chosen
 
     def pairs(oracle: Oracle, displacements: Mapping[str, Sequence[Scalar]]) -> list[Pair]:
-        state, series = completed(oracle), {**oracle.in_time, **variables(oracle)}
-        moved = Carrier(ring, TaylorSeries(oracle.numbers, series), series)
+        state, moved = completed(oracle), in_time(ring, oracle)
         along = [moved(x.polynomial) for x in canonical.momenta_in_velocities]
         p = [x.a for x in along]
         hidden = _without(state, (*names, *(speed.name for speed in system.speeds)))

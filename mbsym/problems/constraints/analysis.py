@@ -14,6 +14,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Constrained, Failure, NoClosedForm
+from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
@@ -458,9 +459,7 @@ def contradiction(ring: Ring, rows: Sequence[Row]) -> tuple[RowName, ...]:
         [*(coefficients.get(monomial, 0) for monomial in monomials), *(int(i == k) for k in range(m))]
         for i, coefficients in enumerate(dicts)
     ]
-    reduced, rank = fmpq_mat(m, width + m, [x for row in entries for x in row]).rref()
-    for i in range(rank):
-        row = [reduced[i, k] for k in range(width + m)]
+    for row in reduced_rows(fmpq_mat(m, width + m, [x for line in entries for x in line])).values():
         if not any(row[: width - 1]) and row[width - 1] != 0:
             return tuple(held[k].name for k in range(m) if row[width + k] != 0)
     return ()
