@@ -199,6 +199,15 @@ class Ring(Algebra[Polynomial]):
     def has(self, kind: str, name: str) -> bool:
         return (kind, name) in self._index
 
+    def given(self, values: Mapping[str, Any]) -> dict[int, Polynomial]:
+        """The parameters whose values are rational, by their generators, with these."""
+        exact = ((name, x) for name, x in values.items() if isinstance(x, Fraction) and self.has("parameter", name))
+        return {self.index("parameter", name): self.number(x) for name, x in exact}
+
+    def at_rest(self, x: Polynomial) -> Polynomial:
+        """x where all velocities are zero."""
+        return self.substitute(x, {k: self.zero for k, g in enumerate(self.generators) if g.kind == "velocity"})
+
     # --- bounds ------------------------------------------------------------------------------------------------------
 
     def limit_work(self, most: int) -> None:

@@ -26,7 +26,7 @@ from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import MotionEntry, Relation, System
 from mbsym.problems import equilibrium, linearisation
-from mbsym.problems.equilibrium import Displacement
+from mbsym.problems.equilibrium import Displacement, Equilibrium
 from mbsym.problems.linearisation import Linearisation
 
 if TYPE_CHECKING:
@@ -361,3 +361,10 @@ def _differs_from_zero(part: Expression, moving: set[str]) -> bool:
     except Failure:
         return False
     return bool(value.is_finite()) and not value.contains(0)
+
+
+def refuse_unsolved(found: Equilibrium) -> None:
+    """Raises Unavailable where the motion exists under conditions that no parameters were solved for."""
+    if len(found.conditions) > len(found.solved):
+        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
+        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))

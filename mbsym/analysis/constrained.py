@@ -79,13 +79,12 @@ def with_runs_prescribed(system: System) -> System:
     ring = ring_of(system)
     signs = {parameter.name: parameter.sign for parameter in system.parameters}
     rows = joined_rows(ring, said_rows(Scene(system, ring, ring_environment(system, ring), ring)))
-    still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
     for k, constraint in enumerate(system.constraints):
         own = [row for row in rows if row.name.constraint == k]
         if len(own) != 1:
             continue
         slopes = [x for slope in own[0].partials if (x := _in_parameters(ring, slope)) is not None]
-        shift = _in_parameters(ring, ring.substitute(own[0].velocity, still))
+        shift = _in_parameters(ring, ring.at_rest(own[0].velocity))
         if shift is None or is_number(shift, 0) or len(slopes) < len(system.coordinates):
             continue
         by_name = {name: x for name, x in zip(system.coordinates, slopes, strict=True) if not is_number(x, 0)}

@@ -174,9 +174,7 @@ def stabilisation_of(analysis: Analysis) -> Stabilisation:
     from mbsym.problems.stabilisation import problem  # few ask for it
 
     steady_state, linear = analysis.equilibrium, analysis.judgeable  # raises first where there is no such motion
-    if len(steady_state.conditions) > len(steady_state.solved):
-        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
-        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    approximation.refuse_unsolved(steady_state)
     _demand_regular(analysis)
     values = stability.parameter_values(analysis.parameters_scene, steady_state)
     if values is not None and not problem.on_motion(analysis.parameters_scene, steady_state, values):

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from itertools import combinations
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -23,7 +22,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
-from mbsym.algebra.matrices import determinant, leading_determinants
+from mbsym.algebra.matrices import determinant, leading_determinants, reduced_rows
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.roots import counted
 from mbsym.analysis.higher import momenta_at_rest
@@ -209,6 +208,13 @@ class _Rests:
         self.slopes.append(own)
         return True
 
+    def numerator(self, x: Polynomial) -> Polynomial:
+        """Of x at the numbers.  Raises NotRational where the denominator vanishes at the rest."""
+        top, below = self.ring.fraction(self.ring.reduce(self.ring.substitute(x, self.numbers)))
+        if not all(self.at(factor) for factor, _ in below):
+            raise NotRational("a derivative has no exact value")
+        return top
+
     def vanishing_part(self, x: Polynomial) -> Polynomial:
         """x without the factors that differ from 0 at the rest."""
         factors = irreducible_factors(x)[1] if x else [(x, 1)]
@@ -226,13 +232,11 @@ class _Rests:
         They are a plane of coordinates, or the zeros of one irreducible polynomial.
         """
         ring = self.ring
-        reduced, rank = fmpq_mat(self.slopes).rref()
-        pivots = [next(j for j in range(len(self.names)) if reduced[r, j] != 0) for r in range(rank)]
-        plane = self.plane([self.names[j] for j in pivots])
+        plane = self.plane([self.names[j] for j in reduced_rows(fmpq_mat(self.slopes))])
         if all(ring.vanishes(ring.substitute(equation, plane)) for equation in self.equations):
             return ring.is_zero(ring.reduce(ring.substitute(x, plane))) is False
         plain = {ring.generators[k].kind for k in occurring([x, *self.equations])} <= {"coordinate"}
-        return plain and rank == 1 and divmod(x, self.equations[0])[1] != 0
+        return plain and len(self.slopes) == 1 and divmod(x, self.equations[0])[1] != 0
 
 
 def _at_values(
@@ -240,11 +244,7 @@ def _at_values(
 ) -> tuple[Mapping[int, Polynomial], Mapping[int, Polynomial]]:
     """What parameters, and then coordinates, are at the rest."""
     ring = analysis.ring
-    numbers = {
-        ring.index("parameter", name): ring.number(x)
-        for name, x in values.items()
-        if isinstance(x, Fraction) and ring.has("parameter", name)
-    }
+    numbers = ring.given(values)
     return numbers, unperturbed_with(analysis.scene, relations(analysis.scene) | numbers)
 
 
@@ -265,13 +265,7 @@ def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
         forces = (*equations.embedded.forcing, *analysis.constraints.velocity)
     numbers, place = _at_values(analysis, values)
     found = _Rests(ring, system.coordinates, numbers, place)
-    still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
-    parts = []
-    for force in forces:
-        top, below = ring.fraction(ring.reduce(ring.substitute(force.polynomial, still | dict(numbers))))
-        if not all(found.at(factor) for factor, _ in below):
-            return None
-        parts.append(found.vanishing_part(top))
+    parts = [found.vanishing_part(found.numerator(ring.at_rest(force.polynomial))) for force in forces]
     for x in [x for x in sorted(parts, key=len) if not found.takes(x)]:
         for equation in found.equations:
             x = divmod(x, equation)[1]
@@ -282,27 +276,20 @@ def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
 
 def _change(analysis: Analysis, rests: _Rests) -> Polynomial:
     """What vanishes where tr(M^-1 K) is what it is at the rest, as it is at all rests that are alike."""
-    ring, names, numbers = rests.ring, rests.names, dict(rests.numbers)
+    ring, numbers = rests.ring, rests.numbers
     mass = [[ring.substitute(x, numbers) for x in row] for row in analysis.equations.mass_matrix.polynomials]
-    still = numbers | {ring.index("velocity", name): ring.zero for name in names}
-    forces = [ring.substitute(x.polynomial, still) for x in analysis.equations.forcing]
+    forces = [ring.substitute(ring.at_rest(x.polynomial), numbers) for x in analysis.equations.forcing]
     whole = determinant(ring, mass)
     trace = ring.zero
-    for k, name in enumerate(names):
+    for k, name in enumerate(rests.names):
         column = [ring.derivative(f, name) for f in forces]
         replaced = [[*row[:k], x, *row[k + 1 :]] for row, x in zip(mass, column, strict=True)]
         trace = ring.reduce(trace + determinant(ring, replaced))
-    top, below = ring.fraction(ring.reduce(trace * rests.at(whole) - whole * rests.at(trace)))
-    if not all(rests.at(factor) for factor, _ in below):
-        raise NotRational("a derivative has no exact value")
-    return top
+    return rests.numerator(trace * rests.at(whole) - whole * rests.at(trace))
 
 
 def _positive(k: fmpq_mat, rank: int) -> bool:
     """Whether K is positive semidefinite of this rank: so on the columns of its pivots."""
-    reduced, found = k.rref()
-    if found != rank:
-        return False
-    pivots = [next(j for j in range(k.ncols()) if reduced[r, j] != 0) for r in range(rank)]
+    pivots = reduced_rows(k)
     block = [[k[i, j] for j in pivots] for i in pivots]
-    return all(minor > 0 for minor in leading_determinants(fmpq_mat, block))
+    return len(pivots) == rank and all(minor > 0 for minor in leading_determinants(fmpq_mat, block))

@@ -13,6 +13,7 @@ from mbsym.mechanics.variables import ring_environment
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+    from mbsym.model.system import System
     from mbsym.problems.canonical import Brackets, Hamilton, Independent, Routh
     from mbsym.problems.checks import Check
 
@@ -39,7 +40,7 @@ def hamilton(analysis: Analysis) -> Hamilton:
     from mbsym.problems import canonical
 
     equations = canonical.hamilton(independent(analysis), analysis.terms)
-    _write(analysis, equations.hamiltonian.ring)
+    write_symbols(analysis.system, equations.hamiltonian.ring)
     return equations
 
 
@@ -48,7 +49,7 @@ def routh(analysis: Analysis) -> Routh:
     from mbsym.problems import canonical
 
     equations = canonical.routh(independent(analysis), analysis.terms)
-    _write(analysis, equations.function.ring)
+    write_symbols(analysis.system, equations.function.ring)
     return equations
 
 
@@ -59,11 +60,12 @@ def brackets(analysis: Analysis) -> Brackets | None:
     return problem.brackets(independent(analysis), analysis.hamilton, analysis.integrals)
 
 
-def _write(analysis: Analysis, ring: Ring) -> None:
-    if analysis.system.symbols:
+def write_symbols(system: System, ring: Ring) -> None:
+    """From now on formulas over the ring are written as the description wants its names."""
+    if system.symbols:
         from mbsym.formulas.latex import write_as
 
-        write_as(ring, {symbol.name: symbol.latex for symbol in analysis.system.symbols})
+        write_as(ring, {symbol.name: symbol.latex for symbol in system.symbols})
 
 
 def requested_forms(analysis: Analysis) -> tuple[str, ...]:

@@ -14,9 +14,8 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.point import Rationals
-from mbsym.analysis.approximation import kept_by_velocities
+from mbsym.analysis.approximation import kept_by_velocities, refuse_unsolved
 from mbsym.analysis.poles import pole
-from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, names
 from mbsym.formulas.formula import Formula
@@ -46,9 +45,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     analysis = analysis.in_free_coordinates
     equilibrium, scene = analysis.equilibrium, analysis.parameters_scene
     analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
-    if len(equilibrium.conditions) > len(equilibrium.solved):
-        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
-        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    refuse_unsolved(equilibrium)
     values = stability.parameter_values(scene, equilibrium)
     nothing = Why.NONE
     if values is not None:
@@ -122,10 +119,9 @@ def _acting(analysis: Analysis) -> Iterator[Polynomial]:
 
 def momenta_at_rest(analysis: Analysis) -> Iterator[Polynomial]:
     """dT/dq' at q' = 0, whose changes are gyroscopic forces."""
-    ring, names = analysis.ring, analysis.system.coordinates
-    still = {ring.index("velocity", name): ring.zero for name in names}
-    for name in names:
-        yield ring.substitute(ring.velocity_derivative(analysis.energy.kinetic_energy.polynomial, name), still)
+    kinetic = analysis.energy.kinetic_energy.polynomial
+    for name in analysis.system.coordinates:
+        yield analysis.ring.at_rest(analysis.ring.velocity_derivative(kinetic, name))
 
 
 def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
@@ -139,9 +135,7 @@ def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
     ring, tied, embedded = analysis.ring, analysis.constraints, analysis.equations.embedded
     if tied.solved is None or tied.in_speeds or embedded is None:
         return False
-    numbers = {
-        ring.index("parameter", name): ring.number(x) for name, x in values.items() if ring.has("parameter", name)
-    }
+    numbers = ring.given(values)
 
     def at(x: Polynomial) -> Polynomial:
         return ring.reduce(ring.substitute(x, numbers))

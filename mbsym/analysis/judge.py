@@ -29,6 +29,7 @@ from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.rationals import fraction
 from mbsym.analysis import families, higher
+from mbsym.analysis.approximation import refuse_unsolved
 from mbsym.analysis.constrained import in_free_coordinates, with_runs_prescribed
 from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
@@ -355,9 +356,7 @@ def exceptional(
     with analysis.strictly():
         equilibrium = analysis.equilibrium
         analysis.judgeable  # noqa: B018  raises where no theorem applies
-    if len(equilibrium.conditions) > len(equilibrium.solved):
-        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
-        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    refuse_unsolved(equilibrium)
     solved = {parameter for parameter, _ in equilibrium.solved}
     if name in solved:
         reason = Message("the motion needs one value of [[name]], which the other parameters give", name=name)

@@ -188,10 +188,7 @@ class Analysis(Stages):
     @cached_property
     def ring(self) -> Ring:
         ring = ring_of(self.system, self.terms, self.angles)
-        if self.system.symbols:
-            from mbsym.formulas.latex import write_as
-
-            write_as(ring, {symbol.name: symbol.latex for symbol in self.system.symbols})
+        forms.write_symbols(self.system, ring)
         return ring
 
     scene = Derived["Analysis", Scene](lambda a: a.over_ring(), knows=Knows.ALL)

@@ -29,10 +29,6 @@ def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = No
 def blocks_of(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Blocks:
     """What conditions of symmetries are made of, with numbers in place of some parameters."""
     ring = analysis.ring
-    numbers = {
-        ring.index("parameter", name): ring.number(x)
-        for name, x in (values or {}).items()
-        if ring.has("parameter", name)
-    }
+    numbers = ring.given(values or {})
     images = {k: ring.substitute(x, numbers) for k, x in relations(analysis.parameters_scene).items()} | numbers
     return blocks(analysis.form, analysis.scene, analysis.energy, analysis.equations, images)

@@ -22,7 +22,6 @@ from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import actions, force_function
 from mbsym.mechanics.programs import scene_without_accelerations
-from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 
 
@@ -37,7 +36,7 @@ class EnergyRate:
 def energy_rate(system: System, ring: Ring) -> EnergyRate:
     """dh/dt as straight-line code; without terms where it is zero at sight."""
     program = Program()
-    scene = scene_without_accelerations(system, ring, program, program_environment(system, program))
+    scene = scene_without_accelerations(system, ring, program)
     terms = [*_explicit(scene, program), *_applied(scene, program)]
     return EnergyRate(program, tuple(term for term in terms if not program.vanishes(term)))
 

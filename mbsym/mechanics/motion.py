@@ -17,6 +17,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, Name, add, divide, multiply, number, subtract
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.variables import rate_of
 from mbsym.model.system import MotionEntry, System
 
 
@@ -141,14 +142,9 @@ def rate_on_motion(scene: Scene, x: Polynomial) -> Polynomial:
     What runs are the coordinates that turn steadily, the prescribed quantities and t.  Raises NoClosedForm.
     """
     ring: Ring = scene.ring
-    total = ring.derivative(x, "t")
     values = motion_values(scene.system)
-    running = [(name, values[name][1]) for name in turning(scene)]
-    running += [(item.name, item.rate) for item in scene.system.prescribed]
-    for name, rate in running:
-        if ring.depends_on(x, name):
-            total = total + ring.times(scene.lower(rate), ring.derivative(x, name))
-    return ring.reduce(total)
+    running = ((name, scene.lower(values[name][1])) for name in turning(scene) if ring.depends_on(x, name))
+    return rate_of(ring, scene.lower, scene.system, x, running)
 
 
 def relations(scene: Scene) -> dict[int, Polynomial]:

@@ -53,10 +53,12 @@ class Programs:
     force_function: Node
 
 
-def scene_without_accelerations(system: System, ring: Ring, program: Program, inputs: Mapping[str, Node]) -> Scene:
+def scene_without_accelerations(
+    system: System, ring: Ring, program: Program, inputs: Mapping[str, Node] | None = None
+) -> Scene:
     """The system over a program, at q'' = 0."""
     still = {acceleration_name(name): program.zero for name in system.coordinates}
-    return Scene(system, program, dict(inputs) | still, ring)
+    return Scene(system, program, {**(inputs or program_environment(system, program)), **still}, ring)
 
 
 def constants(system: System) -> frozenset[str]:

@@ -157,13 +157,12 @@ class Rest:
         """What moves and is tied by constraints; then coordinates without a rate need not be constant."""
         ring, names = self.ring, self.system.coordinates
         moving = [*self.turning, *(item.name for item in self.system.prescribed), "t"]
-        still = {ring.index("velocity", name): ring.zero for name in names}
         tied = []
         for row in self.rows:
             parts = [*([] if row.position is None else [row.position]), *row.partials]
             tied += [name for x in parts for name in ring.dependencies(x, moving)]
             tied += [name for name in self.turning if not row.partials[names.index(name)].is_zero()]
-            tied += [str(row.name.label)] if not ring.substitute(row.velocity, still).is_zero() else []
+            tied += [str(row.name.label)] if not ring.at_rest(row.velocity).is_zero() else []
         return tuple(dict.fromkeys(tied))
 
     @property

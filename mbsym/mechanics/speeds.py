@@ -36,7 +36,7 @@ from mbsym.mechanics import frames as quaternions
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
 from mbsym.mechanics.motion import places, vanishing
-from mbsym.mechanics.variables import program_environment, ring_environment
+from mbsym.mechanics.variables import program_environment, rate_of, ring_environment
 from mbsym.model.speeds import OMEGA, Quaternion, Speed, UnitVector
 from mbsym.model.system import Body, System, acceleration_name, velocity_name
 
@@ -81,8 +81,7 @@ class SpeedForm:
         named = [speed for speed in system.speeds if speed.name not in known]
         forms = self._forms(named, self._given(ring, self._plain, only_vectors=True))
         rows = [[ring.velocity_derivative(x, name) for name in self.coordinates] for x in forms]
-        still = {ring.index("velocity", name): ring.zero for name in self.coordinates}
-        drifts = [ring.substitute(x, still) for x in forms]
+        drifts = [ring.at_rest(x) for x in forms]
         chosen = self._chosen(rows)
         #: Where it vanishes the speeds do not determine the velocities that they replace.
         self.determinant = determinant(ring, [[row[k] for k in chosen] for row in rows])
@@ -112,8 +111,7 @@ class SpeedForm:
     @cached_property
     def drifts(self) -> list[Polynomial]:
         """s0: the speeds of a system whose coordinates and relative orientations stand still."""
-        still = {self.ring.index("velocity", name): self.ring.zero for name in self.coordinates}
-        return [self.ring.substitute(x, still) for x in self._in_velocities]
+        return [self.ring.at_rest(x) for x in self._in_velocities]
 
     @cached_property
     def _in_velocities(self) -> list[Polynomial]:
@@ -312,13 +310,9 @@ class SpeedForm:
     def drift(self, x: Polynomial) -> Polynomial:
         """dx/dt at u' = 0."""
         ring = self.ring
-        total = ring.derivative(x, "t")
-        for name in ring.dependencies(x, [position.name for position in self.positions]):
-            total = total + ring.times(ring.derivative(x, name), self.rates[name])
-        lower = Lowering(ring, self._plain)
-        for item in self.system.prescribed:
-            total = total + ring.times(ring.derivative(x, item.name), lower(item.rate))
-        return ring.reduce(total)
+        moving = ring.dependencies(x, [position.name for position in self.positions])
+        running = ((name, self.rates[name]) for name in moving)
+        return rate_of(ring, Lowering(ring, self._plain), self.system, x, running)
 
     # --- relations ---------------------------------------------------------------------------------------------------
 

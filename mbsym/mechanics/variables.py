@@ -11,7 +11,7 @@ from typing import Any
 from mbsym.algebra.base import Lowering, Scalar
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Program
-from mbsym.algebra.ring import TERM_BUDGET, Ring
+from mbsym.algebra.ring import TERM_BUDGET, Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.rates import is_rate
 from mbsym.expressions.tree import (
@@ -81,6 +81,20 @@ def time_derivative(expression: Expression, system: System, frozen: bool = False
     for name in sorted(present & rates.keys()):
         total = add(total, multiply(differentiate(expression, name), rates[name]))
     return total
+
+
+def rate_of(
+    ring: Ring,
+    lower: Lowering[Polynomial],
+    system: System,
+    x: Polynomial,
+    rates: Iterable[tuple[str, Polynomial]] = (),
+) -> Polynomial:
+    """dx/dt: sum of rate dx/d(name) over the ``rates`` and what is prescribed, and dx/dt itself; others stand still."""
+    total = ring.derivative(x, "t")
+    for name, rate in (*rates, *((item.name, lower(item.rate)) for item in system.prescribed)):
+        total = total + ring.times(rate, ring.derivative(x, name))
+    return ring.reduce(total)
 
 
 def _names(expression: Expression) -> set[str]:

@@ -26,7 +26,7 @@ from mbsym.mechanics.energy import body_energy
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code, Kernel
@@ -64,8 +64,7 @@ def followed_bodies(scenario: Scenario, frame: str = INERTIAL) -> Callable[[Any,
     """``body_motions`` of times, states and rates, for whoever has them bit by bit."""
     system = scenario.system
     program = Program()
-    environment = program_environment(system, program)
-    scene = scene_without_accelerations(system, ring_of(system), program, environment)
+    scene = scene_without_accelerations(system, ring_of(system), program)
     algebra = scene.algebra
     names = tuple(body.name for body in system.bodies if frame in system.path(body.name)[:-1])
     fixed: list[Node] = []

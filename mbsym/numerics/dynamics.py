@@ -24,7 +24,7 @@ from mbsym.expressions.table import Curve
 from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.falling import relative_lagrangian
 from mbsym.mechanics.programs import ForwardDynamics, Programs, forward_dynamics, programs, scene_without_accelerations
-from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System
 from mbsym.numerics.events.features import SLIDING, Features, Polynomial, Standing, features, held, sign_that_holds
 from mbsym.numerics.kernels.interface import Cells, Code
@@ -206,7 +206,7 @@ class Dynamics:
     def _lagrangian(self) -> tuple[Node, Node]:
         """(T, U) in the specialised program; relative to the frames that fall, where there are any."""
         program = Program()
-        scene = scene_without_accelerations(self.system, self.ring, program, program_environment(self.system, program))
+        scene = scene_without_accelerations(self.system, self.ring, program)
         kinetic, force = substituted(program, relative_lagrangian(scene), self._specialised)
         return kinetic, force
 

@@ -21,7 +21,7 @@ from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.programs import scene_without_accelerations
-from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.mechanics.variables import ring_of
 from mbsym.model.constraints import Coincide, Distance
 from mbsym.model.system import INERTIAL, Body, System
 from mbsym.model.system import Point as PointOfBody
@@ -127,8 +127,7 @@ def positions(scenario: Scenario, times: Any, states: Any) -> Positions | None:
     """Points along a trajectory (``states`` of shape (2n, m)); None where there is nothing to draw."""
     system = scenario.system
     program = Program()
-    environment = program_environment(system, program)
-    scene = scene_without_accelerations(system, ring_of(system), program, environment)
+    scene = scene_without_accelerations(system, ring_of(system), program)
     fresh = bound(scenario)
     inputs = ("t", *system.coordinates, *system.velocities)
     carriers = frames(system)

@@ -21,7 +21,7 @@ from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.programs import scene_without_accelerations
-from mbsym.mechanics.variables import angles_of, program_environment, ring_of
+from mbsym.mechanics.variables import angles_of, ring_of
 from mbsym.model.constraints import Coincide, Distance, is_holonomic
 from mbsym.model.loads import (
     CoordinateDamper,
@@ -250,7 +250,7 @@ def picture_at(found: Start, frame: str | None = None) -> Picture:
     scenario = found.scenario
     system = scenario.system
     program = bound(scenario)
-    scene = scene_without_accelerations(system, ring_of(system), program, program_environment(system, program))
+    scene = scene_without_accelerations(system, ring_of(system), program)
     known = coordinates(scenario)
     named = [frame] if frame is not None else frames(system)
     made = [_Made(scene, scenario, name, known) for name in named]

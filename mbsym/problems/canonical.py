@@ -62,11 +62,11 @@ from mbsym.expressions.message import Message, joined, worded
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
-from mbsym.mechanics.speed_states import all_slopes, completed, variables
+from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.speed_states import all_slopes, completed, in_time
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.states import Oracles
-from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.mechanics.variables import rate_of, ring_environment, ring_of
 from mbsym.model.momenta import denominator_names, momentum_names
 from mbsym.model.system import acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, FAILED, HOW_EQUAL, Check, Pair, compare, extent, how_equal
@@ -369,12 +369,8 @@ def routh(own: Independent, terms: int) -> Routh:
     lower = Lowering(ring, ring_environment(system, ring))
     forcing = []
     for name, momentum in zip(left, slopes, strict=True):
-        rate = ring.derivative(momentum, "t")
-        for item in system.prescribed:
-            rate = rate + ring.times(lower(item.rate), ring.derivative(momentum, item.name))
-        for other, velocity in moving_as.items():
-            rate = rate + ring.times(velocity, ring.derivative(momentum, other))
-        forcing.append(ring.reduce(ring.substitute(applied[name], back) + slope(function, name) - ring.reduce(rate)))
+        rate = rate_of(ring, lower, system, momentum, moving_as.items())
+        forcing.append(ring.reduce(ring.substitute(applied[name], back) + slope(function, name) - rate))
     rest_of = {ring.index("velocity", name): ring.zero for name in left}
     return Routh(
         ignored=ignored,
@@ -527,8 +523,7 @@ def check_hamilton(
         return not canonical.plain or name in chosen.chosen
 
     def pairs(oracle: Oracle, displacements: Mapping[str, Sequence[Scalar]]) -> list[Pair]:
-        state, series = completed(oracle), {**oracle.in_time, **variables(oracle)}
-        moved = Carrier(ring, TaylorSeries(oracle.numbers, series), series)
+        state, moved = completed(oracle), in_time(ring, oracle)
         along = [moved(x.polynomial) for x in canonical.momenta_in_velocities]
         p = [x.a for x in along]
         hidden = _without(state, (*names, *(speed.name for speed in system.speeds)))

@@ -211,8 +211,7 @@ class ConstrainedBalance(Balance):
     @cached_property
     def _rates(self) -> tuple[Polynomial, ...]:
         """j(q, t) of every row."""
-        still = {self.ring.index("velocity", name): self.ring.zero for name in self.scene.system.coordinates}
-        return tuple(self.ring.substitute(row.velocity, still) for row in self._rows or ())
+        return tuple(self.ring.at_rest(row.velocity) for row in self._rows or ())
 
     @property
     def _homogeneous(self) -> bool:

@@ -52,7 +52,7 @@ from mbsym.mechanics.frames import forward
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS, generalized_forces
 from mbsym.mechanics.motion import motion_values, relations, turning, unperturbed_with
-from mbsym.mechanics.variables import expressions
+from mbsym.mechanics.variables import expressions, rate_of
 from mbsym.model.loads import (
     Load,
 )
@@ -105,13 +105,7 @@ class Balance:
 
     def at(self, values: Mapping[str, Any]) -> Balance:
         """The same at parameter values; irrational ones (enclosures) keep their letters, so that less is known."""
-        ring = self.scene.ring
-        exact = {
-            ring.index("parameter", name): ring.number(value)
-            for name, value in values.items()
-            if isinstance(value, Fraction) and ring.has("parameter", name)
-        }
-        there = replace(self, fixed=exact)
+        there = replace(self, fixed=self.scene.ring.given(values))
         # What holds for all parameters holds there: no need to find it once more at every point.
         cached: dict[str, Any] = {"ignorable": self.ignorable}
         if not self._signs:  # which may be known where parameters are numbers
@@ -387,10 +381,7 @@ class Balance:
         ring, system = self.scene.ring, self.scene.system
 
         def changed(x: Polynomial) -> Polynomial:
-            total = ring.derivative(x, "t")
-            for item in system.prescribed:
-                total = total + ring.times(ring.derivative(x, item.name), self.scene.lower(item.rate))
-            return self._put(ring.reduce(total))
+            return self._put(rate_of(ring, self.scene.lower, system, x))
 
         try:
             left = changed(self._lagrangian)
@@ -399,8 +390,7 @@ class Balance:
                 return False
             if any(ring.is_zero(slopes[name]) is not True for name in {*turning(self.scene), *self.ignorable}):
                 return False
-            still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
-            rest = ring.substitute(left, still)
+            rest = ring.at_rest(left)
             return all(
                 ring.is_zero(ring.derivative(slopes[a], b) - ring.derivative(slopes[b], a)) is True
                 for a, b in combinations(system.coordinates, 2)
@@ -510,12 +500,11 @@ class Balance:
     def _static(self, loads: Sequence[Load]) -> dict[str, Polynomial]:
         """Q(q, 0) of some loads together where it has a potential, which joins the energy; else nothing."""
         ring = self.scene.ring
-        still = {ring.index("velocity", name): ring.zero for name in self.scene.system.coordinates}
         forces: dict[str, Polynomial] = {}
         try:
             for load in loads:
                 for name, force in KINDS[type(load)].action(load, self.scene).generalized.items():
-                    forces[name] = forces.get(name, ring.zero) + self._put(ring.substitute(force, still))
+                    forces[name] = forces.get(name, ring.zero) + self._put(ring.at_rest(force))
             every = {name: ring.reduce(forces.get(name, ring.zero)) for name in self.scene.system.coordinates}
             return every if self._has_potential(every) else {}
         except Failure:

@@ -39,6 +39,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
+from mbsym.mechanics.variables import rate_of
 from mbsym.problems.energy import Energy
 
 if TYPE_CHECKING:
@@ -105,12 +106,8 @@ def equations(scene: Scene, energy: Energy) -> Equations:
 
 def convective_rate(scene: Scene, ring: Ring, x: Polynomial) -> Polynomial:
     """dx/dt at q'' = 0: sum_j q'_j dx/dq_j + sum over prescribed of rate dx/d(prescribed) + dx/dt."""
-    total = ring.derivative(x, "t")
-    for name in scene.system.coordinates:
-        total = total + ring.times(ring.generator("velocity", name), ring.derivative(x, name))
-    for item in scene.system.prescribed:
-        total = total + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
-    return ring.reduce(total)
+    velocities = ((name, ring.generator("velocity", name)) for name in scene.system.coordinates)
+    return rate_of(ring, scene.lower, scene.system, x, velocities)
 
 
 def separate(scene: Scene, equations: Equations) -> list[list[str]]:

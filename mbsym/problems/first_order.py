@@ -33,6 +33,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import divide, number, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, Shown, column
+from mbsym.mechanics.constraints.expansion import reached
 from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import motion_values, turning, unperturbed_with, unsteady
@@ -227,17 +228,9 @@ def _positions(
     ring, names = form.ring, list(rates)
     needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
 
-    def reached(start: set[str]) -> set[str]:
-        found, pending = set(start), list(start)
-        while pending:
-            new = needs[pending.pop()] - found
-            found |= new
-            pending += new
-        return found
-
     start = {name for x in formulas for name in ring.dependencies(x, names)}
-    by_themselves = {name for name in form.coordinates if name in needs and name in reached(needs[name])}
-    for reachable in (reached(start | by_themselves), reached(start)):
+    by_themselves = {name for name in form.coordinates if name in needs and name in reached(needs, needs[name])}
+    for reachable in (reached(needs, start | by_themselves), reached(needs, start)):
         yield [x for x in form.positions if x.name in reachable]
 
 

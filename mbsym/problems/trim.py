@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
@@ -99,14 +98,8 @@ def _row(ring: Ring, x: Polynomial, unknowns: Sequence[str]) -> Row:
 
 def _within(ring: Ring, x: Polynomial, names: Sequence[str]) -> list[str]:
     """Which parameters occur, be it under sine and cosine, roots and reciprocals."""
-    pending, seen = [*occurring([x])], set()
-    while pending:
-        k = pending.pop()
-        if k not in seen:
-            seen.add(k)
-            argument = ring.generators[k].argument
-            pending += [] if argument is None else occurring([argument])
-    parameters = {ring.generators[k].name for k in seen if ring.generators[k].kind in ("parameter", "sine", "cosine")}
+    held = (ring.generators[k] for k in ring.held([x]))
+    parameters = {g.name for g in held if g.kind in ("parameter", "sine", "cosine")}
     return [name for name in names if name in parameters]
 
 

@@ -372,6 +372,16 @@ class Matrices:
     key: str
     packed: bool = False
 
+    def entries(self) -> list[tuple[str, Formula]]:
+        """(index, entry) of what is not zero."""
+        comma = "," if len(self.value.rows) > 9 else ""
+        return [
+            (f"{i + 1}{comma}{j + 1}", entry)
+            for i, row in enumerate(self.value)
+            for j, entry in enumerate(row)
+            if not entry.is_zero and (j >= i or not self.symmetric)
+        ]
+
 
 @dataclass(frozen=True)
 class SideBySide:

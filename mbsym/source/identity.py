@@ -109,6 +109,11 @@ def _inverse(value: int) -> int:
     return pow(value, -1, _PRIME)
 
 
+def _sum_of_angles(a: tuple[int, int], b: tuple[int, int]) -> tuple[int, int]:
+    """sin and cos of a sum, from those of its parts."""
+    return (a[0] * b[1] + a[1] * b[0]) % _PRIME, (a[1] * b[1] - a[0] * b[0]) % _PRIME
+
+
 class _FieldPoint:
     """One random point: a value and a half-angle tangent for every name."""
 
@@ -175,11 +180,7 @@ class _FieldPoint:
             raise _NotRational
         sine, cosine = ((0, 1), (1, 0), (0, -1), (-1, 0))[quarters.numerator % 4]
         for name, coefficient in form.coefficients:
-            other_sine, other_cosine = self.multiple(name, coefficient)
-            sine, cosine = (
-                (sine * other_cosine + cosine * other_sine) % _PRIME,
-                (cosine * other_cosine - sine * other_sine) % _PRIME,
-            )
+            sine, cosine = _sum_of_angles((sine, cosine), self.multiple(name, coefficient))
         return sine % _PRIME, cosine % _PRIME
 
     def multiple(self, name: str, coefficient: Fraction) -> tuple[int, int]:
@@ -190,13 +191,10 @@ class _FieldPoint:
             raise _NotRational
         half = self.random("angle " + name)
         inverse = _inverse(1 + half * half)
-        one_sine, one_cosine = 2 * half * inverse % _PRIME, (1 - half * half) * inverse % _PRIME
+        one = 2 * half * inverse % _PRIME, (1 - half * half) * inverse % _PRIME
         sine, cosine = 0, 1
         for _ in range(count):
-            sine, cosine = (
-                (sine * one_cosine + cosine * one_sine) % _PRIME,
-                (cosine * one_cosine - sine * one_sine) % _PRIME,
-            )
+            sine, cosine = _sum_of_angles((sine, cosine), one)
         return (sine if coefficient > 0 else -sine % _PRIME), cosine
 
 

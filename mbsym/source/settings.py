@@ -310,15 +310,16 @@ def _leading(node: Node | None, reading: Reading) -> str:
     if scalar is None:
         return ""
     if reading.scope.kinds.get(scalar.text) not in _KINDS:
-        known = ", ".join(n for n, k in reading.scope.kinds.items() if k in _KINDS)
-        message = Message("[[what]] is no variable", what=ascii_safe(scalar.text))
-        reading.error(
-            "unknown-name",
-            message,
-            scalar.span,
-            Message("variables are coordinates and speeds: [[known]]", known=known),
-        )
+        _no_variable(scalar, _KINDS, reading)
     return scalar.text
+
+
+def _no_variable(scalar: Scalar, kinds: tuple[str, ...], reading: Reading) -> None:
+    """Complains, and tells the names of these kinds."""
+    known = ", ".join(n for n, k in reading.scope.kinds.items() if k in kinds)
+    message = Message("[[what]] is no variable", what=ascii_safe(scalar.text))
+    hint = Message("variables are coordinates and speeds: [[known]]", known=known)
+    reading.error("unknown-name", message, scalar.span, hint)
 
 
 def _variables(node: Node | None, what: str, reading: Reading) -> Iterator[str]:
@@ -329,14 +330,7 @@ def _variables(node: Node | None, what: str, reading: Reading) -> Iterator[str]:
             continue
         kind = reading.scope.kinds.get(scalar.text)
         if kind not in _KINDS:
-            known = ", ".join(n for n, k in reading.scope.kinds.items() if k in ("coordinate", "speed"))
-            message = Message("[[what]] is no variable", what=ascii_safe(scalar.text))
-            reading.error(
-                "unknown-name",
-                message,
-                scalar.span,
-                Message("variables are coordinates and speeds: [[known]]", known=known),
-            )
+            _no_variable(scalar, ("coordinate", "speed"), reading)
         elif scalar.text in seen:
             reading.error("repeated-name", "[[what]] is listed twice", scalar.span, what=ascii_safe(scalar.text))
         else:

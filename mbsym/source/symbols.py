@@ -100,8 +100,7 @@ def _stem(tokens: list[tuple[str, int]], place: int, text: str) -> int:
 
 def _group(tokens: list[tuple[str, int]], place: int, text: str, words: bool) -> int:
     """Behind a group in braces: one letter, or a word where a font is meant."""
-    opening, inside = place, place + 1
-    place = inside
+    place = inside = place + 1
     while place < len(tokens) and tokens[place][0] != "}":
         if not words and place > inside:
             raise _unexpected(tokens[place], "one letter stands under an accent")
@@ -109,11 +108,7 @@ def _group(tokens: list[tuple[str, int]], place: int, text: str, words: bool) ->
             place += 1
             continue
         place = _stem(tokens, place, text)
-    if place == len(tokens):
-        raise _unexpected(tokens[opening], "the brace is never closed")
-    if place == inside:
-        raise _unexpected(tokens[opening], "there is nothing in the braces")
-    return place + 1
+    return _closed(tokens, inside, place)
 
 
 def _index(tokens: list[tuple[str, int]], place: int, text: str) -> int:
@@ -122,16 +117,20 @@ def _index(tokens: list[tuple[str, int]], place: int, text: str) -> int:
         raise _Wrong("an index is missing", len(text), len(text) + 1)
     if tokens[place][0] != "{":
         return place + 1 if re.fullmatch("[0-9]", tokens[place][0]) else _stem(tokens, place, text)
-    opening, inside = place, place + 1
-    place = inside
+    place = inside = place + 1
     while place < len(tokens) and tokens[place][0] != "}":
         token = tokens[place][0]
         plain = re.fullmatch(r"[0-9,+*/ .-]", token) or (token.startswith("\\") and token[1:] in _IN_INDEX)
         place = place + 1 if plain else _stem(tokens, place, text)
+    return _closed(tokens, inside, place)
+
+
+def _closed(tokens: list[tuple[str, int]], inside: int, place: int) -> int:
+    """Behind the brace that closes what begins ``inside``."""
     if place == len(tokens):
-        raise _unexpected(tokens[opening], "the brace is never closed")
+        raise _unexpected(tokens[inside - 1], "the brace is never closed")
     if place == inside:
-        raise _unexpected(tokens[opening], "there is nothing in the braces")
+        raise _unexpected(tokens[inside - 1], "there is nothing in the braces")
     return place + 1
 
 

@@ -14,7 +14,7 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import HOLD, LINEAR, Points, Source, Table
 from mbsym.model.system import rational
-from mbsym.model.units import Declared
+from mbsym.source.constants import note_unit
 from mbsym.source.keys import MAX_POINTS, TABLE
 from mbsym.source.placed import Entry, Node, Sequence
 from mbsym.source.reading import Fields, Reading
@@ -41,10 +41,7 @@ def _table(entry: Entry, reading: Reading) -> Table:
     hint = "write {points: [[0, 0], [1, 2.5]]}"
     fields = reading.fields(entry.value, what, TABLE, hint)
     between, outside = fields.word("between") or LINEAR, fields.word("outside") or HOLD
-    unit = fields.get("unit")
-    scalar = None if unit is None else reading.scalar(unit, Message("the unit of [[name]]", name=ascii_safe(name)))
-    if scalar is not None:
-        reading.units.append(Declared(name, scalar.text.strip(), scalar.span))
+    note_unit(name, fields, reading)
     source = None
     if fields.get("file") is not None:
         fields.exclude("file", ["points"])

@@ -52,11 +52,12 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
         return
     for name in request.values:
         if name == small.name or name in dict(small.powers):
-            yield Unfit(
-                "--set",
-                "bad-assignment",
-                Message("[[name]] belongs to the small parameter: it stays a symbol", name=name),
-            )
+            yield stays_a_symbol(name)
+
+
+def stays_a_symbol(name: str) -> Unfit:
+    text = "[[name]] belongs to the small parameter: it stays a symbol"
+    return Unfit("--set", "bad-assignment", Message(text, name=name))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
+from mbsym.studies.expand import stays_a_symbol
 from mbsym.studies.request import ExactSettings, Text, Whole, formats, language
 from mbsym.studies.study import DESCRIPTION, Answer, Asked, Exit, Folder, Refusal, Study, Unfit, Watch, failed, refused
 
@@ -105,11 +106,7 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
         yield Unfit("--of", "unknown-name", message, Message("there are [[names]]", names=", ".join(known)))
     for name in request.values:
         if small is not None and (name == small.name or name in {*dict(small.powers)} - {*system.parameter_names}):
-            yield Unfit(
-                "--set",
-                "bad-assignment",
-                Message("[[name]] belongs to the small parameter: it stays a symbol", name=name),
-            )
+            yield stays_a_symbol(name)
     if request.scale is not None:
         yield from _unscaled(request.scale, system)
     if request.integral is not None:

@@ -57,15 +57,20 @@ def against_sign(option: str, axis: Axis, system: System) -> Iterator[Unfit]:
         yield Unfit(option, "against-sign", message, "choose an interval of that sign")
 
 
+def no_number(lacking: Sequence[str]) -> Unfit:
+    """Of parameters that need one."""
+    example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
+    lacks = Message("no number for [[names]]", names=", ".join(lacking))
+    return Unfit("--set", "missing-value", lacks, Message("for example [[example]]", example=example))
+
+
 def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfit]:
     """Why a section cannot be made: everything at once, each with what to do."""
     from mbsym.maps.section import Fault
 
     lacking = list(dict.fromkeys(complaint.name for complaint in wrong if complaint.fault is Fault.MISSING))
     if lacking:
-        example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
-        lacks = Message("no number for [[names]]", names=", ".join(lacking))
-        yield Unfit("--set", "missing-value", lacks, Message("for example [[example]]", example=example))
+        yield no_number(lacking)
     for flaw in dict.fromkeys(wrong):
         match flaw.fault:
             case Fault.RELATED:

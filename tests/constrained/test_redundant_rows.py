@@ -496,7 +496,7 @@ def test_digits_of_accelerations(text: str) -> None:
     except SingularPoint:
         assume(False)
     n, source = constraints.size, np.random.default_rng(len(text))
-    for place in constraints._places(start):
+    for place in constraints.near:
         state = place.copy()
         state[n:] = source.normal(size=n)
         here = constraints.at(0.0, state)

@@ -331,7 +331,7 @@ MISTAKES = [
     Mistake(
         "a forgotten convective term",
         LEFT,
-        "slope(function, name) - ring.reduce(rate)",
+        "slope(function, name) - rate",
         "slope(function, name)",
         "shaft",
         (ROUTH,),
@@ -347,8 +347,8 @@ MISTAKES = [
     Mistake(
         "dependent coordinates at rest",
         LEFT,
-        "velocity, ring.derivative(momentum, other)",
-        "velocity if other in free else ring.zero, ring.derivative(momentum, other)",
+        "moving_as.items()",
+        "((x, y if x in free else ring.zero) for x, y in moving_as.items())",
         "sphere",
         (ROUTH,),
     ),

@@ -622,9 +622,9 @@ CAUGHT = [
     ),
     Mistake(
         "prescribed motions dropped from the convective derivative",
-        "problems.equations:convective_rate",
-        "total + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))",
-        "total",
+        "mechanics.variables:rate_of",
+        "in system.prescribed",
+        "in ()",
         "machine",
         (EQUATIONS,),
     ),

@@ -108,8 +108,7 @@ class Conditions:
 def conditions(system: System, ring: Ring) -> Conditions:
     """The rows of all constraints over a program, without those that are zero at sight."""
     program = Program()
-    inputs = program_environment(system, program)
-    scene = scene_without_accelerations(system, ring, program, inputs)
+    scene = scene_without_accelerations(system, ring, program)
     rows = [row for row in constraint_rows(scene) if not row.is_trivial(program)]
     return Conditions(program, holonomic_first(rows))
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import cast
+from typing import TypeVar, cast
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.jet import Jet, Jets
@@ -547,17 +547,20 @@ def felt(found: Expansion, equations: Projected) -> tuple[int, ...]:
     car): they have roots of their own.  All others (a place on the ground, the angle of a wheel) follow by quadratures
     and drop out.
     """
-    rows = [{m for m, x in enumerate(row) if not x.is_zero()} for row in equations.T]
+    rows = {j: {m for m, x in enumerate(row) if not x.is_zero()} for j, row in enumerate(equations.T)}
     pending = {j for row in equations.C for j, x in enumerate(row) if not x.is_zero()}
-    pending |= {j for j in range(len(rows)) if j in _reached(rows, rows[j])}
-    return tuple(sorted(_reached(rows, pending)))
+    pending |= {j for j in rows if j in reached(rows, rows[j])}
+    return tuple(sorted(reached(rows, pending)))
 
 
-def _reached(rows: Sequence[set[int]], start: set[int]) -> set[int]:
-    """Everything that some coordinates depend on, and these."""
+T = TypeVar("T")
+
+
+def reached(needs: Mapping[T, set[T]], start: set[T]) -> set[T]:
+    """Everything that some variables depend on, and these."""
     known, pending = set(start), list(start)
     while pending:
-        new = rows[pending.pop()] - known
+        new = needs[pending.pop()] - known
         known |= new
         pending += new
     return known

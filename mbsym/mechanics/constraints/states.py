@@ -212,10 +212,9 @@ class Manifold:
         names, angles = self.system.coordinates, self.ring.angles
         values = [float(arb(place[name]).mid()) for name in names]
         largest = max((abs(x) for name, x in zip(names, values, strict=True) if name not in angles), default=0.0)
-        n, found = len(names), [0.0] * len(names)
-        flat = self.program.evaluate([x for row in self._slopes(names) for x in row], place, Balls(dict(place)))
-        slopes = [abs(float(arb(x).mid())) for x in flat]
-        for row in (slopes[i : i + n] for i in range(0, len(slopes), n)):
+        found = [0.0] * len(names)
+        for slopes in self._phi(names, place, Balls(dict(place)))[1]:
+            row = [abs(float(arb(x).mid())) for x in slopes]
             turned = max((x for name, x in zip(names, row, strict=True) if name in angles), default=0.0)
             found = [max(size, turned / x if x else 0.0) for size, x in zip(found, row, strict=True)]
         return [
@@ -266,10 +265,7 @@ class Manifold:
         if not self._positions:
             return 0
         names = [*self.system.coordinates, *self.system.parameter_names]
-        slopes = self._slopes(names)
-        flat = self.program.evaluate([x for row in slopes for x in row], at.state.values, at.state.numbers)
-        n = len(names)
-        return eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n)).rank
+        return eliminated(self._phi(names, at.state.values, at.state.numbers)[1], range(len(names))).rank
 
     def relation(self, states: Sequence[OnManifold]) -> Polynomial | None:
         """A polynomial in the parameters that vanishes at the states, where phi = 0 demands one relation of them.
@@ -278,14 +274,10 @@ class Manifold:
         for one between products of powers it is so times the parameters.  None where it is neither.
         """
         names, parameters = self.system.coordinates, self.system.parameter_names
-        slopes = self._slopes([*names, *parameters])
         normals: list[list[arb]] = []
         for enclosed in (state.enclosed for state in states):
-            flat = self.program.evaluate(
-                [x for row in slopes for x in row], enclosed.state.values, enclosed.state.numbers
-            )
-            width = len(names) + len(parameters)
-            done = eliminated([flat[i : i + width] for i in range(0, len(flat), width)], range(len(names)))
+            _, slopes = self._phi([*names, *parameters], enclosed.state.values, enclosed.state.numbers)
+            done = eliminated(slopes, range(len(names)))
             pivots = {i for i, _ in done.pivots}
             left = [[arb(x) for x in row[len(names) :]] for i, row in enumerate(done.rows) if i not in pivots]
             normals.append(max(left, key=lambda row: max(float(abs(x).upper()) for x in row)))
@@ -371,11 +363,8 @@ class Manifold:
         Where all lengths are multiples of one, phi is homogeneous in it: lengths of 0 close any loop, and say nothing.
         """
         names = self._unknowns
-        slopes = self._slopes(names)
-        nodes = [*self._positions, *(x for row in slopes for x in row)]
-        entries = self.program.evaluate(nodes, values, numbers)
-        m, n = len(self._positions), len(names)
-        rows = [[*entries[m + i * n : m + (i + 1) * n], -entries[i]] for i in range(m)]
+        n = len(names)
+        rows = [[*row, -x] for x, row in zip(*self._phi(names, values, numbers), strict=True)]
         done = eliminated(rows, range(n))
         changed = dict(values)
         for i, column in done.pivots:
@@ -390,6 +379,15 @@ class Manifold:
             inputs = [self.programs.environment[name] for name in names]
             known = self._known_slopes[tuple(names)] = jacobian(self.program, self._positions, inputs)
         return known
+
+    def _phi(
+        self, names: Sequence[str], place: Mapping[str, Any], numbers: Algebra
+    ) -> tuple[list[Any], list[list[Any]]]:
+        """phi at a place, and its slopes by the names."""
+        m, n = len(self._positions), len(names)
+        nodes = [*self._positions, *(x for row in self._slopes(names) for x in row)]
+        entries = self.program.evaluate(nodes, place, numbers)
+        return entries[:m], [entries[m + i * n : m + (i + 1) * n] for i in range(m)]
 
     # --- velocities and accelerations, by linear equations ---
 
@@ -466,14 +464,12 @@ class Manifold:
         leave less than ``faint`` lead nowhere, and are left out.
         """
         names, sizes = self.system.coordinates, [arb(x) for x in self._sizes(values)]
-        m, n = len(self._positions), len(names)
-        nodes = [*self._positions, *(x for row in self._slopes(names) for x in row)]
         rows: list[int] = []
         for _ in range(_LED):
-            entries = [arb(arb(x).mid()) for x in self.program.evaluate(nodes, values, Balls(dict(values)))]
-            table = (entries[i : i + n] for i in range(m, len(entries), n))
-            slopes = [{k: x * sizes[k] for k, x in enumerate(row) if x != 0} for row in table]
-            rows, step = _shortest(slopes, entries[:m], faint)
+            residual, table = self._phi(names, values, Balls(dict(values)))
+            middles = ([arb(arb(x).mid()) for x in row] for row in table)
+            slopes = [{k: x * sizes[k] for k, x in enumerate(row) if x != 0} for row in middles]
+            rows, step = _shortest(slopes, [arb(arb(x).mid()) for x in residual], faint)
             values = values | {names[k]: arb((values[names[k]] - x * sizes[k]).mid()) for k, x in step.items()}
         return values, sorted(rows)
 
@@ -485,15 +481,12 @@ class Manifold:
         Steps are by the rows that are ``chosen``, or by all; the others must hold at the root.  Raises SingularPoint or
         NoValue as the rows do, ZeroDivisionError where no root was proved.
         """
-        slopes = self._slopes(names)
-        flat = [x for row in slopes for x in row]
-        m, n = len(self._positions), len(names)
+        n = len(names)
 
         def at(place: Mapping[str, Any]) -> tuple[list[Any], list[list[Any]]]:
-            entries = self.program.evaluate([*self._positions, *flat], place, Balls(dict(place)))
-            return entries[:m], [entries[m + i * n : m + (i + 1) * n] for i in range(m)]
+            return self._phi(names, place, Balls(dict(place)))
 
-        taken, limit = range(m) if chosen is None else chosen, 0.0
+        taken, limit = range(len(self._positions)) if chosen is None else chosen, 0.0
         for _ in range(_NEWTON):
             residual, rows = at(values)
             table = [[*rows[i], residual[i]] for i in taken]

@@ -25,7 +25,6 @@ from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, constraine
 from mbsym.mechanics.falling import falling_frames
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import scene_without_accelerations
-from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 from mbsym.numerics.borders import BORDER, Judged, LinearModel
 from mbsym.numerics.closing import closed
@@ -466,7 +465,7 @@ def falling(scenario: Scenario, ring: Ring, found: Sequence[Quantity], truth: Tr
     if not frames or usual is None:
         return None
     program = Program()
-    scene = scene_without_accelerations(scenario.system, ring, program, program_environment(scenario.system, program))
+    scene = scene_without_accelerations(scenario.system, ring, program)
     nodes = tuple(-x for x in residuals(scene).values())
     apart = Quantity("forcing", Code(program, usual.code.inputs, nodes))
     rates = [rate for _, rate in scenario.prescribed.values() if rate]

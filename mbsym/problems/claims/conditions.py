@@ -337,6 +337,10 @@ def _same_condition(signs: Signs, first: Inequality, second: Inequality) -> bool
 def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
     together = _of_its_place(derived, claim)
     number = len(together)
+
+    def holds(found: Verdict, note: str) -> ClaimResult:
+        return _told(result, Outcome.EXACT, said(Said.WITH_IT, number, note, with_theorem(found.word, found.theorems)))
+
     always = derived.stability.verdict
     if always.stable:  # nothing can refute it, and where other angles were judged nothing could be tried
         each = (trivial(region, wanted_of(region, claim), result) for region in forms(derived, claim))
@@ -364,11 +368,7 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
             note = _BODIES if bodies else ""
             verdict = region.verdict(conditions, bodies)
             if verdict.stable:
-                return _told(
-                    result,
-                    Outcome.EXACT,
-                    said(Said.WITH_IT, number, note, with_theorem(verdict.word, verdict.theorems)),
-                )
+                return holds(verdict, note)
             if verdict.word in (Word.GYROSCOPIC, Word.CRITICAL):
                 open_words = (said(Said.FIRST_WITH_IT, number),)
             inner = region.verdict(strict, bodies) if strict != conditions else verdict
@@ -376,18 +376,12 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                 message = with_theorem(inner.word, inner.theorems)
                 borders = _on_borders(region, conditions)
                 if borders is not None:
-                    whole = weakest([inner, *borders])
-                    return _told(
-                        result,
-                        Outcome.EXACT,
-                        said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorems)),
-                    )
+                    return holds(weakest([inner, *borders]), note)
                 inside = said(Said.WITH_IT, number, joined((*filter(None, (note, _BUT_EQUALITY)), ","), ""), message)
                 return _told(result, Outcome.UNDECIDED, inside, _with_equality(derived, claim))
     by_integrals = _by_integrals(derived, claim, together)
     if by_integrals is not None:
-        message = with_theorem(by_integrals.word, by_integrals.theorems)
-        return _told(result, Outcome.EXACT, said(Said.WITH_IT, number, "", message))
+        return holds(by_integrals, "")
     remarks = open_words or (said(Said.NOT_PROVED_SUFFICIENT, number), _tried(tried, Said.NONE_UNSTABLE))
     return _told(result, Outcome.UNDECIDED, *remarks)
 

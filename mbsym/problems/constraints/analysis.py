@@ -14,6 +14,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Constrained, Failure, NoClosedForm
+from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
@@ -214,8 +215,7 @@ class _Analysis:
 
     def _check_freedom(self, independent: Sequence[int]) -> None:
         """Raises Unsound where nothing can move, and nothing is moved either."""
-        still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
-        if len(independent) < self.n or any(self.ring.substitute(row.velocity, still) for row in self.rows):
+        if len(independent) < self.n or any(self.ring.at_rest(row.velocity) for row in self.rows):
             return
         message = "the constraints leave no freedom: nothing can move"
         hint = "leave one of them out"
@@ -249,8 +249,7 @@ class _Analysis:
         points, independent = self.independent_rows()
         pivots = self._chosen(independent, points)
         jacobian = [row.partials for row in self.rows]
-        still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
-        shifts = [self.ring.substitute(row.velocity, still) for row in self.rows]
+        shifts = [self.ring.at_rest(row.velocity) for row in self.rows]
         at_rest = {self.ring.index("acceleration", name): self.ring.zero for name in self.system.coordinates}
         gammas = [self.ring.substitute(row.acceleration, at_rest) for row in self.rows]
         sides = list(zip(shifts, gammas, strict=True))
@@ -460,9 +459,7 @@ def contradiction(ring: Ring, rows: Sequence[Row]) -> tuple[RowName, ...]:
         [*(coefficients.get(monomial, 0) for monomial in monomials), *(int(i == k) for k in range(m))]
         for i, coefficients in enumerate(dicts)
     ]
-    reduced, rank = fmpq_mat(m, width + m, [x for row in entries for x in row]).rref()
-    for i in range(rank):
-        row = [reduced[i, k] for k in range(width + m)]
+    for row in reduced_rows(fmpq_mat(m, width + m, [x for line in entries for x in line])).values():
         if not any(row[: width - 1]) and row[width - 1] != 0:
             return tuple(held[k].name for k in range(m) if row[width + k] != 0)
     return ()

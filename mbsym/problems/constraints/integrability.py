@@ -17,6 +17,7 @@ from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import State
+from mbsym.mechanics.variables import rate_of
 from mbsym.problems.constraints.result import Integrability
 
 #: A vector field on the coordinates and t: the components of the coordinates, then that of t.
@@ -160,10 +161,7 @@ def along(scene: Scene, field: Field, x: Polynomial) -> Polynomial:
             total = total + ring.times(component, ring.derivative(x, name))
     clock = field[-1]
     if not ring.vanishes(clock):
-        rate = ring.derivative(x, "t")
-        for item in scene.system.prescribed:
-            rate = rate + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
-        total = total + ring.times(clock, rate)
+        total = total + ring.times(clock, rate_of(ring, scene.lower, scene.system, x))
     return ring.reduce(total)
 
 
@@ -177,12 +175,7 @@ def is_exact_by_itself(scene: Scene, row: Sequence[Polynomial], shift: Polynomia
     present = [i for i, x in enumerate(form) if not ring.vanishes(x)]
 
     def slope(x: Polynomial, i: int) -> Polynomial:
-        if i < len(names):
-            return ring.derivative(x, names[i])
-        rate = ring.derivative(x, "t")
-        for item in scene.system.prescribed:
-            rate = rate + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
-        return rate
+        return ring.derivative(x, names[i]) if i < len(names) else rate_of(ring, scene.lower, scene.system, x)
 
     def curl(i: int, k: int) -> Polynomial:
         return slope(form[k], i) - slope(form[i], k)

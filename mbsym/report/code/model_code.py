@@ -30,7 +30,6 @@ from mbsym.mechanics.programs import (
     momenta,
     scene_without_accelerations,
 )
-from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.problems.integrals import (
     AXIAL,
@@ -272,8 +271,7 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
 def _scene(analysis: Analysis) -> tuple[Scene, Program]:
     """The system over a program of its own."""
     program = Program()
-    inputs = program_environment(analysis.system, program)
-    return scene_without_accelerations(analysis.system, analysis.ring, program, inputs), program
+    return scene_without_accelerations(analysis.system, analysis.ring, program), program
 
 
 def places(analysis: Analysis) -> tuple[Part, Part]:

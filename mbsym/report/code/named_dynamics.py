@@ -179,7 +179,7 @@ def _forward(analysis: Analysis) -> Computed | None:
 def _coriolis(system: System, ring: Ring) -> Computed:
     program = Program()
     alone = replace(system, loads=())
-    frames = articulation(scene_without_accelerations(alone, ring, program, program_environment(alone, program)))
+    frames = articulation(scene_without_accelerations(alone, ring, program))
     return Computed(program, tuple(-x for x in forcing(frames, bias_forces(frames))))
 
 
@@ -196,7 +196,7 @@ def _gravity(system: System, ring: Ring) -> Computed:
 def _frames(system: System, ring: Ring) -> tuple[tuple[FrameCode, ...], tuple[str, ...]]:
     """Of every body, ends of the tree first where there are too many."""
     program = Program()
-    scene = scene_without_accelerations(system, ring, program, program_environment(system, program))
+    scene = scene_without_accelerations(system, ring, program)
     placed = _Placed(articulation(scene), program)
     carrying = {body.attached_to for body in system.bodies}
     made: dict[str, FrameCode] = {}

@@ -165,17 +165,6 @@ def matrix(value: Matrix, long: frozenset[int] = frozenset(), spelled: bool = Fa
     return Markup(f"<mrow{attributes}>{written}</mrow>" if attributes else written)
 
 
-def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]:
-    """(index, entry) of what is not zero; of a symmetric matrix the upper half."""
-    comma = "," if len(value.rows) > 9 else ""
-    return [
-        (f"{i + 1}{comma}{j + 1}", entry)
-        for i, line in enumerate(value)
-        for j, entry in enumerate(line)
-        if not entry.is_zero and (j >= i or not symmetric)
-    ]
-
-
 # --- polynomials ------------------------------------------------------------------------------------------------------
 
 

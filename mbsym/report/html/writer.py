@@ -390,8 +390,7 @@ class Writer:
         if whole:
             return formulas.text_line(left, mo("="), whole)
         return Markup("\n").join(
-            self._line(self.math(content.Entry(value.symbol, index)), entry)
-            for index, entry in formulas.entries(value.value, value.symmetric)
+            self._line(self.math(content.Entry(value.symbol, index)), entry) for index, entry in value.entries()
         )
 
     @block.register

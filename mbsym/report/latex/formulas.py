@@ -82,18 +82,6 @@ def row(values: Column, long: frozenset[int] = frozenset(), widest: float = WIDE
     return ",\\; ".join(written) if fits else ""
 
 
-def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]:
-    """(index, entry) of what is not zero; of a symmetric matrix the upper half."""
-    n = len(value.rows)
-    comma = "," if n > 9 else ""
-    return [
-        (f"{i + 1}{comma}{j + 1}", entry)
-        for i, row in enumerate(value)
-        for j, entry in enumerate(row)
-        if not entry.is_zero and (j >= i or not symmetric)
-    ]
-
-
 def polynomial(coefficients: Sequence[Formula], variable: str, length: Callable[[Formula], str]) -> str:
     """sum of coefficient*variable^k, highest power first; instead of one that nobody would read its ``length``."""
     written: list[str] = []

@@ -278,7 +278,7 @@ class Writer:
         if value.value.is_zero:
             return self._display(f"{self.math(value.symbol)} = 0", value.key)
         if value.packed:
-            entries = formulas.entries(value.value, value.symmetric)
+            entries = value.entries()
             return packed(entries, self.math(value.symbol), self.labels.equation(value.key))
         whole = formulas.matrix(value.value, self.long, self.form.widest, self.measured)
         if whole:
@@ -288,7 +288,7 @@ class Writer:
             self._display(
                 f"{self.math(content.Entry(value.symbol, index))} = {self.math(entry)}", f"{value.key}:{index}"
             )
-            for index, entry in formulas.entries(value.value, value.symmetric)
+            for index, entry in value.entries()
         )
 
     @block.register

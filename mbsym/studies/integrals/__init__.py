@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
+from mbsym.studies.section import no_number
 from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line, refused
 
 if TYPE_CHECKING:
@@ -144,9 +145,7 @@ def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
         yield Unfit("--vary", "not-there", message, "take another parameter")
     lacking = [name for name in there.field.parameters if name != axis.name]
     if lacking:
-        example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
-        lacks = Message("no number for [[names]]", names=", ".join(lacking))
-        yield Unfit("--set", "missing-value", lacks, Message("for example [[example]]", example=example))
+        yield no_number(lacking)
 
 
 def answer(context: Asked, request: Request, derived: Found) -> Answer:
