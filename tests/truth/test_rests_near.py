@@ -126,6 +126,12 @@ def test_reactions_change_momenta_and_bend_what_drifts(potential: str, force: st
     assert found is Word.STABLE_BUT_CYCLIC if drifts else found.open
 
 
+def test_what_turns_is_held_though_not_at_first() -> None:
+    """(0, 1, 0) at x = 1 is allowed; turned by an angle a the point has z = -a^2/2 + ..., and V = a^4/4."""
+    text = TIED.replace("V, FORCE", "(x**2 + y**2 - 1)**2 + z**2").replace("x: 0", "x: 1")
+    assert word(text.replace("ROW", "z_dot = (1 + y*z)*x_dot")) in (Word.STABLE, Word.CRITICAL, Word.UNDECIDED)
+
+
 @pytest.mark.parametrize(
     ("row", "wanted"),
     [
