@@ -75,14 +75,14 @@ def by_energy_with_fewer_constraints(
 
 
 def _drifts(analysis: Analysis, there: Analysis) -> bool:
-    """Whether constraints allow a symmetric displacement everywhere: J (c . D) = 0 for some numbers c.
+    """Whether constraints allow one of the constant displacements D that change nothing: J (c . D) = 0, c numbers.
 
     Then its momentum is constant (Noether), whatever it is.  At the rest alone it is not enough: y' = x x' bends x up.
     """
     ring = there.ring
     place = unperturbed_with(there.scene, relations(there.scene))
     carry = Carrier(analysis.ring, ring, ring_environment(there.system, ring))
-    fields = there.balance.symmetries(there.system.coordinates).directions
+    fields = there.balance.displacements(there.system.coordinates).directions
     rows = [[carry(x) for x in row] for row in analysis.constraints.jacobian.polynomials]
     held = [[ring.reduce(ring.dot(row, one)).to_dict() for row in rows] for one in fields]
     terms = sorted({(r, key) for one in held for r, x in enumerate(one) for key in x})

@@ -145,8 +145,11 @@ class Judge:
         if apart.word.open:
             return None
         alike = [(names, part) for names, part in judged if part.word is apart.word] or judged
-        about = Reason(Because.APART, ("; ".join(", ".join(names) for names, _ in alike),))
-        return replace(apart, reasons=tuple(sorted({*alike[0][1].reasons, about}, key=lambda reason: reason.rank)))
+        reasons = max((part.reasons for _, part in alike), key=lambda own: [reason.rank for reason in own])
+        about = Reason(
+            Because.APART, ("; ".join(", ".join(names) for names, part in alike if part.reasons == reasons),)
+        )
+        return replace(apart, reasons=tuple(sorted({*reasons, about}, key=lambda reason: reason.rank)))
 
     def _along_rests(self, values: Mapping[str, Any]) -> Verdict | None:
         """Instability by slow motions along rests near by, or by those of one coordinate."""

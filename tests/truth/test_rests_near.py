@@ -7,7 +7,7 @@ import pytest
 import mbsym
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Because, Word
 
 
 def word(text: str) -> Word:
@@ -124,6 +124,12 @@ MAGNETIC = "generalized force: {x: 3*y_dot, y: -3*x_dot}"
 def test_reactions_change_momenta_and_bend_what_drifts(potential: str, force: str, row: str, drifts: bool) -> None:
     found = word(TIED.replace("V,", f"{potential},").replace("FORCE", force).replace("ROW", row))
     assert found is Word.STABLE_BUT_CYCLIC if drifts else found.open
+
+
+def test_what_turns_is_held_though_not_at_first() -> None:
+    """(0, 1, 0) at x = 1 is allowed; turned by an angle a the point has z = -a^2/2 + ..., and V = a^4/4."""
+    text = TIED.replace("V, FORCE", "(x**2 + y**2 - 1)**2 + z**2").replace("x: 0", "x: 1")
+    assert word(text.replace("ROW", "z_dot = (1 + y*z)*x_dot")) in (Word.STABLE, Word.CRITICAL, Word.UNDECIDED)
 
 
 @pytest.mark.parametrize(
@@ -327,3 +333,14 @@ def test_one_coordinate_moves_while_the_other_rests(potential: str, force: str, 
 def test_a_potential_with_another_first_term_on_either_side(loads: str, wanted: Word) -> None:
     text = "mbsym: 1\nname: kink\nbodies:\n  - {name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}\n"
     assert word(f"{text}loads: [{loads}]\nmotion: {{x: 0}}\n") is wanted
+
+
+def test_parts_are_told_by_reasons_of_their_own() -> None:
+    """K is that of x alone: of y it is 0, and |y|^3 makes the minimum."""
+    text = VALLEY.replace("POINT", "x, y").replace("V, FORCE", "abs(y)**3 + x**2/2").replace("X", "0")
+    found = mbsym.loads(text, (4, 5, 6)).stability.numerical
+    assert found is not None
+    assert {(reason.code, reason.data) for reason in found.reasons} == {
+        (Because.HIGHER_MINIMUM, (3,)),
+        (Because.APART, ("y",)),
+    }

@@ -174,7 +174,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     ),
     Because.DRIFT: (
         "This is about the other coordinates and all velocities, with respect to a part of the variables (Rumyantsev); "
-        "a perturbation of the cyclic velocities can make the cyclic coordinates drift away."
+        "a perturbation of the cyclic velocities can make the cyclic coordinates drift away where no dissipation stops "
+        "them."
     ),
     Because.DRIFT_AT_GIVEN_MOMENTA: (
         "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little "
