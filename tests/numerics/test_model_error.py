@@ -87,6 +87,19 @@ def test_a_lower_order_of_gravity_is_as_wrong_as_a_rerun_says(order: int) -> Non
     assert confirmed(found, truth, scale, 1e-10).confirmed
 
 
+def test_a_difference_of_roundings_rules_no_steps() -> None:
+    """At a distance of 100 lengths the fourth order of gravity is 1e-4 of the second, and forces cancel to roundings.
+
+    Ten million steps followed the roundings; the motion itself takes about ten.
+    """
+    given = scenario(mbsym.load(SYSTEMS / "orbital-gyrostat.yaml", ()).system)
+    both = modelled(given, Model(2)), modelled(given, Model("exact"))
+    setting, ones = Setting(tolerance=1e-9, step_limit=100), np.ones(6)
+    found = model_error(*both, METHODS["dop853"], setting, np.linspace(0, 0.5, 11), ones, 1e-6)
+    assert found.trusted, found.trouble
+    assert found.largest < 1e-12
+
+
 def test_an_error_that_is_not_small_is_not_trusted() -> None:
     found, _ = estimate(satellite(), Model(2), Model("exact"), np.linspace(0, 10, 101))
     assert not found.trusted

@@ -39,6 +39,14 @@ class Code:
     def operations(self) -> int:
         return self.program.operations(self.outputs)
 
+    @cached_property
+    def in_any_units(self) -> int:
+        """The operations but for products with numbers: where a unit makes a number 1, there is no such product."""
+        instructions = self.program.instructions
+        live = (instructions[number] for number in self.program.live(self.outputs))
+        products = (x.operands for x in live if x.operation == "multiply")
+        return self.operations - sum(any(instructions[k].operation == "constant" for k in x) for x in products)
+
 
 #: values of shape (inputs,) or (inputs, m) -> results of shape (outputs,) or (outputs, m)
 Kernel = Callable[[Any], Any]

@@ -19,8 +19,9 @@ the largest of the others, and S_i = max A_ij D_j.  F_j, v_j and S_i/A_ij that h
 of the largest are roundings and count as 0, and so are A_ij of an angle beside those of others by the same v_j.  A
 column y of derivatives of the state, in which single components may be roundings, is measured as a whole: y_i has the
 size S_i max_k |y_k|/S_k, and while all of y is 0 that with y_k' times the shortest tau for y_k; of a derivative by a
-parameter p the part 1e-12 of S_i/|p| is a rounding, and counts as 0.  What begins from rest at 0 by a push has the
-times that the slopes of the rates tell there.
+parameter p the part 1e-12 of S_i/|p| is a rounding, and counts as 0.  A difference between two models is written in
+parts of what can be tolerated, and its floor is 1: its rates may be roundings of forces that cancel.  What begins from
+rest at 0 by a push has the times that the slopes of the rates tell there.
 Where nothing tells a time or a size these are 1: all rests then, or the push is constant.
 """
 
@@ -28,7 +29,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,7 @@ from mbsym.model.states import described
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code, Kernel
-from mbsym.numerics.methods.interface import Work, compiled_kernel
+from mbsym.numerics.methods.interface import Work, compiled_kernel, once
 
 #: A coordinate is displaced by this part of its size.
 DISPLACED = 1 / 8
@@ -78,10 +78,11 @@ Rates = Callable[[Any, Any], Any]
 
 @dataclass(frozen=True)
 class Variables:
-    """Which of the components of a state are ``angles`` (or of unit vectors), ``velocities``, constants: masks (d,).
+    """Which of a state's components are ``angles`` (or of unit vectors), ``velocities``, constants: masks (d,).
 
     ``masses`` makes the kernel of the diagonal of the mass matrix.  ``columns``: places of derivatives of the first
     components of the state, in their order; ``changes``: of each 1/|p| if it is by a parameter p, else 0.
+    ``differences`` are those between two models, a mask (d,).
     """
 
     angles: Any
@@ -90,11 +91,12 @@ class Variables:
     masses: Callable[[], Kernel] | None = None
     columns: tuple[Any, ...] = ()
     changes: tuple[float, ...] = ()
+    differences: Any = False
 
     @property
     def positions(self) -> Any:
         """What is none of these, as a mask."""
-        apart = self.velocities | self.constant
+        apart = self.velocities | self.constant | self.differences
         apart[[place for column in self.columns for place in column]] = True
         return ~apart
 
@@ -110,20 +112,26 @@ class Variables:
 
 def variables(dynamics: Dynamics) -> Variables:
     """Those of a Dynamics; what stands behind positions and velocities is neither."""
+    n = len(dynamics.system.velocities)
+
+    def masses() -> Kernel:
+        whole = dynamics.mass_matrix
+        diagonal = Code(whole.program, whole.inputs, whole.outputs[:: n + 1])
+        return once(dynamics, "masses", lambda: arrays.kernel(diagonal))
+
+    kinds = once(dynamics, "variables", lambda: _kinds(dynamics))
+    return replace(kinds, masses=masses) if n <= MOST_WEIGHED else kinds
+
+
+def _kinds(dynamics: Dynamics) -> Variables:
+    """The same, without the masses."""
     system = dynamics.system
     names = dynamics.inputs[1 : 1 + dynamics.dimension]
     bounded = set(angle_denominators(system))
     bounded |= {name for body in described(system).bodies for vector in body.orientation for name in vector.components}
     bounded &= set(system.coordinates)
-    groups = bounded, set(system.velocities), set(system.parameter_names)
-    n = len(system.velocities)
-
-    @cache
-    def masses() -> Kernel:
-        whole = dynamics.mass_matrix
-        return arrays.kernel(Code(whole.program, whole.inputs, whole.outputs[:: n + 1]))
-
-    angles, moving, constant = (np.array([name in group for name in names], dtype=bool) for group in groups)
+    groups = bounded, set(system.velocities), set(system.parameter_names), getattr(dynamics, "differences", ())
+    angles, moving, constant, apart = (np.array([name in group for name in names], dtype=bool) for group in groups)
     columns: dict[str, list[int]] = {}
     for place, (name, joined, number) in enumerate(full_name.partition("~") for full_name in names):
         if joined and number.isdecimal() and name in names:
@@ -131,8 +139,7 @@ def variables(dynamics: Dynamics) -> Variables:
     directions, values = getattr(dynamics, "directions", ()), dynamics.scenario.parameters
     by = (abs(float(values.get(direction.parameter) or 0)) for direction in directions)
     changes = tuple(1 / value if value else 0.0 for value in by) or (0.0,) * len(columns)
-    known = masses if n <= MOST_WEIGHED else None
-    return Variables(angles, moving, constant, known, tuple(map(np.array, columns.values())), changes)
+    return Variables(angles, moving, constant, None, tuple(map(np.array, columns.values())), changes, apart)
 
 
 @dataclass(frozen=True)
@@ -230,6 +237,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     natural[placed] = np.maximum(sizes[placed], SHARE * arcs)
     own = np.maximum(own, _alike(own, weights))
     natural[moving] = np.minimum(sizes[moving], np.where(own > 0, own, SHARE * sizes[moving]))
+    natural[np.broadcast_to(kinds.differences, len(natural))] = 1 / LEAST
     return Magnitudes(sizes, shortest, natural, np.where(kinds.velocities, OF_VELOCITIES, ROUNDINGS)[:, None])
 
 

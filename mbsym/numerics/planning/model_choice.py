@@ -301,14 +301,18 @@ def model_chosen(scene: Scene, watch: Callable[[str], None] = lambda text: None)
             continue
         item, own = candidate
         tried.append(item)
-        if item.ratio <= PART and item.operations < SAVES * taken.operations:
+        if item.ratio <= PART and _saves(own, dynamics):
             taken, dynamics = item, own
             break
     fewer = None if taken.model.linear else _without(scene, taken.model, watch)
-    if fewer is not None and fewer[0].operations < SAVES * taken.operations:
+    if fewer is not None and _saves(fewer[1], dynamics):
         taken, dynamics = fewer
         tried.append(taken)
     return ModelChoice(taken, dynamics, tuple(tried), scene.model)
+
+
+def _saves(simple: Dynamics, rich: Dynamics) -> bool:
+    return simple.right_hand_side.in_any_units < SAVES * rich.right_hand_side.in_any_units
 
 
 def _candidates(scene: Scene) -> list[Model]:
@@ -333,7 +337,7 @@ def _held_against(scene: Scene, model: Model) -> tuple[Tried, Dynamics] | None:
     """A model with its error; None where it saves nothing.  Raises Failure where it has no program."""
     dynamics = modelled(scene.scenario, model)
     operations = dynamics.right_hand_side.operations
-    if operations >= SAVES * scene.rich.right_hand_side.operations:
+    if not _saves(dynamics, scene.rich):
         return None
     naive = _naive(scene, dynamics)
     if not naive <= HOPELESS * PART:
