@@ -40,7 +40,8 @@ def scene(text: str) -> Scenario:
 def test_the_price_of_a_run_with_rows_is_about_what_it_takes(end: float, count: int) -> None:
     """Prices choose the method, and tell what others would take: of two methods their ratio is right within 5.
 
-    Rows of Taylor series are made in Python, some 50 us a step with a row in it, fifty times the step itself.
+    Rows of Taylor series are made in Python, some 50 us a step with a row in it, fifty times the step itself; where
+    they lie close those of many steps are made together.
     """
     dynamics = Dynamics(scenario(mbsym.load(DOUBLE).system))
     seconds, priced = {}, {}

@@ -129,9 +129,9 @@ def test_the_angles_follow_the_motion(analysis, solutions):
         motion = paths.angles[one.variable][1]
         total, away = motion[0], []
         for rate, wave in zip(one.rates, one.waves, strict=True):
-            total = total + float(series._of(rate)) * paths.times
+            total = total + float(series.value(rate)) * paths.times
             for k, pair in wave.waves.items():
-                c, s = (float(series._of(x)) for x in pair)
+                c, s = (float(series.value(x)) for x in pair)
                 total = total + c * np.cos(k * series.rate * paths.times) + s * np.sin(k * series.rate * paths.times)
             away.append(np.abs(total - motion).max())
         assert away[-1] < 0.5 * away[-2], (one.variable, away)
