@@ -244,6 +244,7 @@ class Dynamics:
     @cached_property
     def _inertial(self) -> Sequence[Node]:
         """(T - U without the gyrostatic term, T, U) of the motion in inertial space, in the specialised program."""
+        _ = self.relative_energy  # always first: roundings hang on the order in which a program is written
         found = self._programs
         nodes = [found.energy, found.kinetic_energy, found.force_function]
         return substituted(found.program, nodes, self._specialised)

@@ -175,6 +175,7 @@ class StateDynamics(Dynamics):
 
     @property
     def _inertial(self) -> Sequence[Node]:
+        _ = self.relative_energy  # first, as in coordinates
         return self._in_scene[:3]
 
     @property
