@@ -22,6 +22,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
+from mbsym.algebra.kernel import kernel
 from mbsym.algebra.matrices import determinant, leading_determinants, reduced_rows
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.roots import counted
@@ -36,7 +37,7 @@ from mbsym.problems.stability.verdict import Flaw, Verdict, concluded
 from mbsym.problems.stability.words import CHETAEV, LAGRANGE, Because, Fact, Ground, Reason, Word
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.analysis.pipeline import Analysis
@@ -78,12 +79,27 @@ def _drifts(analysis: Analysis, there: Analysis) -> bool:
     """Whether constraints allow one of the constant displacements D that change nothing: J (c . D) = 0, c numbers.
 
     Then its momentum is constant (Noether), whatever it is.  At the rest alone it is not enough: y' = x x' bends x up.
+    Or q0 + e t D is a motion for every e: rows that do not change along D allow it at q0, and D^T M D is stationary.
     """
-    ring = there.ring
+    ring, names = there.ring, there.system.coordinates
     place = unperturbed_with(there.scene, relations(there.scene))
     carry = Carrier(analysis.ring, ring, ring_environment(there.system, ring))
-    fields = there.balance.displacements(there.system.coordinates).directions
+    found = there.balance.displacements(names)
+    fields = found.directions
     rows = [[carry(x) for x in row] for row in analysis.constraints.jacobian.polynomials]
+
+    def vanish(polynomials: Iterable[Polynomial]) -> bool:
+        return all(ring.is_zero(ring.reduce(x)) is True for x in polynomials)
+
+    still = fields[: found.constant]
+    allowed = ([ring.dot([ring.substitute(x, place) for x in row], one) for one in still] for row in rows)
+    for weights in kernel(ring, *allowed) if still else ():
+        along = [ring.dot(list(weights.values()), [still[k][i] for k in weights]) for i in range(len(names))]
+        inertia = ring.dot(along, [ring.dot(row, along) for row in there.equations.mass_matrix.polynomials])
+        changes = (ring.dot(along, [ring.derivative(x, name) for name in names]) for row in rows for x in row)
+        pulls = (ring.substitute(ring.derivative(inertia, name), place) for name in names)
+        if vanish(changes) and vanish(pulls):
+            return True
     held = [[ring.reduce(ring.dot(row, one)).to_dict() for row in rows] for one in fields]
     terms = sorted({(r, key) for one in held for r, x in enumerate(one) for key in x})
     if not fields or fmpq_mat([[one[r].get(key, 0) for r, key in terms] for one in held]).rank() == len(fields):

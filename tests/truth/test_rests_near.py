@@ -119,6 +119,8 @@ MAGNETIC = "generalized force: {x: 3*y_dot, y: -3*x_dot}"
         ("(y**2 + z**2)/2", "rayleigh: 0*x_dot", "y_dot = (x + z)*x_dot", False),
         # (1, 1, 0) is allowed wherever it is: x' + y' is constant
         ("z**2/2", "rayleigh: 0*x_dot", "x_dot = y_dot + y*z*z_dot", True),
+        # x = e t, y = z = 0 is a motion for every e, though elsewhere the row turns
+        ("(y**2 + z**2)/2", "rayleigh: 0*x_dot", "z_dot = y*x_dot", True),
     ],
 )
 def test_reactions_change_momenta_and_bend_what_drifts(potential: str, force: str, row: str, drifts: bool) -> None:
