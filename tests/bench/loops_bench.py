@@ -3,7 +3,7 @@
     python tests/bench/loops_bench.py [--table] [--forty] [NAME ...]
 
 Each at the loosest tolerance (decades) with which the error at the end is within the target, of all or of those whose
-name has one of the words in it.  Seconds are processor time of the run alone, the least of a hundred, and of everything
+name has one of the words in it.  Seconds are processor time of the run alone, the least of twenty, and of everything
 before it: reading, equations, machine code (which the second time is read from a file).  Published times are from other
 machines, and at errors that their authors did not all state: they show orders of magnitude, nothing else.
 
@@ -45,7 +45,7 @@ from mbsym.source import read  # noqa: E402
 from tests.constrained.test_mechanisms import chain, described  # noqa: E402
 from tests.mechanisms import MECHANISMS, Mechanism, Truth  # noqa: E402
 
-REPEATS = 100
+REPEATS = 20
 
 
 @dataclass(frozen=True)
