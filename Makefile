@@ -149,7 +149,7 @@ consumers: $(VENV)/.has-consumers
 bench: robot-data $(VENV)/.has-bench
 	$(BIN)/python tests/bench/run.py
 	$(BIN)/python tests/bench/rows_bench.py
-	$(BIN)/python tests/bench/loops_bench.py --large
+	$(BIN)/python tests/bench/loops_bench.py
 	$(BIN)/python tests/bench/sweep_bench.py
 	$(BIN)/python tests/bench/maps_bench.py
 	$(BIN)/python tests/bench/peers_bench.py

@@ -1,16 +1,9 @@
-"""Quaternions and unit vectors integrated beside constraints, held against d'Alembert by hand.
+"""Quaternions and unit vectors integrated beside constraints, held against Newton and Euler (``tests/free_bodies.py``).
 
-The reference knows nothing of joints, coordinates or speeds: each body is free, with centre r, quaternion e (body to
-space, R), velocity v and angular velocity w in its own axes,
+Rows, with c in body axes and u = R c the arm in space:
 
-    m v' = F + F_c,    I w' = - w x I w + M_c,    J (v', w') = -gamma,
-
-and the accelerations are those of Gauss's principle by the singular values of all rows: z = z0 + M^-1/2 (J M^-1/2)^+
-(-gamma - J z0).  Rows, with c in body axes, A = (c x) and u = R c the arm in space:
-
-    coincide     r + u - (r2 + u2):  v + R (w x c),   gamma = R (w x (w x c))
-    distance     (d.d - L(t)^2)/2 with d = r + u - P:  d.(v + R w x c) - L L',
-                 gamma = d.R (w x (w x c)) + |d'|^2 - L'^2 - L L''
+    coincide     r + u - (r2 + u2):  v + R (w x c)
+    distance     (d.d - L(t)^2)/2 with d = r + u - P:  d.(v + R w x c) - L L'
     rolling      v + (R w) x a with an arm a: constant in space (ball), or -rho (g - (g.n) n)/|..| (disc with axis n)
 """
 
@@ -19,7 +12,6 @@ from __future__ import annotations
 import ctypes
 import shutil
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -39,63 +31,10 @@ from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.targets import FORMATS
 from mbsym.simulation import read_values
 from tests.constrained.test_flow_on_the_manifold import numbers
+from tests.free_bodies import Rows, cosines, motion, point
+from tests.mechanisms import BALL, TORUS, rolling_ball, rolling_torus
 
 COMPILER = shutil.which("cc")
-
-G = np.array([0.0, 0.0, -9.81])
-
-
-def cosines(e: Any) -> Any:
-    """R of a quaternion, whatever its norm."""
-    a, v = e[0], e[1:]
-    x = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return ((a * a - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * a * x) / (e @ e)
-
-
-def cross(a: Any) -> Any:
-    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-
-
-#: (bodies, t) -> (J (k, 6 n), gamma (k,)); bodies are (r, R, v, w).
-Rows = Callable[[list[Any], float], tuple[Any, Any]]
-
-
-def reference(masses: list[float], inertias: list[Any], rows: Rows, start: Any, times: Any) -> Any:
-    """States (13 n, m), body by body r, e, v, w."""
-    n = len(masses)
-    root = np.concatenate([np.r_[np.full(3, m), np.asarray(i)] for m, i in zip(masses, inertias, strict=True)]) ** -0.5
-
-    def rates(t: float, x: Any) -> Any:
-        bodies, free, found = [], [], []
-        for k in range(n):
-            r, e, v, w = np.split(x[13 * k : 13 * k + 13], [3, 7, 10])
-            bodies.append((r, cosines(e), v, w))
-            free += [*G, *(-np.cross(w, inertias[k] * w) / inertias[k])]
-        J, gamma = rows(bodies, t)
-        z0 = np.array(free)
-        z = z0 + root * (np.linalg.pinv(J * root, rcond=1e-10) @ (-gamma - J @ z0))
-        for k in range(n):
-            _, e, v, w = np.split(x[13 * k : 13 * k + 13], [3, 7, 10])
-            turned = 0.5 * np.r_[-e[1:] @ w, e[0] * w + np.cross(e[1:], w)]
-            found += [*v, *turned, *z[6 * k : 6 * k + 6]]
-        return np.array(found)
-
-    done = solve_ivp(rates, (0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-12, atol=1e-13)
-    assert done.success
-    return done.y
-
-
-def part(n: int, k: int, along: Any, about: Any) -> Any:
-    """Rows of one body among n."""
-    found = np.zeros((len(along), 6 * n))
-    found[:, 6 * k : 6 * k + 3], found[:, 6 * k + 3 : 6 * k + 6] = along, about
-    return found
-
-
-def swung(body: Any, c: Any) -> tuple[Any, Any]:
-    """(dV/dw, gamma) of a material point."""
-    _, R, _, w = body
-    return -R @ cross(c), R @ np.cross(w, np.cross(w, c))
 
 
 def run(tmp_path: Path, text: str, time: float) -> Any:
@@ -123,27 +62,6 @@ def kept(found: Any, bound: float = 1e-10) -> None:
     assert all(np.max(x) < bound for x in norm_drifts(found.dynamics, found.trajectory.states).values())
 
 
-BALL = """
-mbsym: 1
-name: Chaplygin's sphere
-parameters: {m: {value: 2, sign: positive}, r: {value: 0.5, sign: positive}, g: {value: 9.81, sign: positive}}
-bodies:
-  - {name: centre, attached to: 0, connection point: [x, y, r], coordinates: [x, y], mass: m}
-  - {name: sphere, attached to: centre, rotation: {axes: [3, 1, 3], angles: [psi, theta, phi]}, mass: 0,
-     inertia about: joint, inertia: [0.1, 0.15, 0.22], speeds: {p: omega1, q: omega2, s: omega3},
-     orientation: {e: quaternion}}
-loads: [{uniform gravity: {vector: [0, 0, -g]}}]
-constraints:
-  - rolling: {body: sphere, point: [0, 0, -r], axes: centre, on: ground}
-dependent: [x, y]
-"""
-
-
-def rolling_ball(bodies: list[Any], t: float) -> tuple[Any, Any]:
-    # The ball's arm is constant in space, and d(R w)/dt = R w': gamma = 0.
-    return part(1, 0, np.eye(3), -cross([0, 0, -0.5]) @ bodies[0][1]), np.zeros(3)
-
-
 @pytest.mark.parametrize(
     "initial",
     [
@@ -158,9 +76,7 @@ def test_chaplygins_sphere_passes_every_attitude(tmp_path: Path, initial: str) -
     names = found.dynamics.inputs[1:]
     e, w = (np.array([first[names.index(x)] for x in group]) for group in (("e0", "e1", "e2", "e3"), "pqs"))
     v = -np.cross(cosines(e) @ w, [0, 0, -0.5])
-    wanted = reference(
-        [2], [np.array([0.1, 0.15, 0.22])], rolling_ball, np.r_[0, 0, 0.5, e, v, w], found.trajectory.times
-    )
+    wanted = motion([2], [np.array([0.1, 0.15, 0.22])], rolling_ball, np.r_[0, 0, 0.5, e, v, w], found.trajectory.times)
     assert np.array([column(found, x) for x in "xy"]) == pytest.approx(wanted[:2], abs=1e-9)
     assert np.array([column(found, x) for x in "pqs"]) == pytest.approx(wanted[10:13], abs=1e-9)
     same_attitude(found, "e", wanted[3:7])
@@ -190,22 +106,18 @@ initial: {x: 0.02, y: 0.01, z: -0.48, e0: 1, e1: 0, e2: 0, e3: 0, p: 1, q: -0.5,
 """
 
 
-def point_of_top(bodies: list[Any], t: float) -> tuple[Any, Any]:
-    about, gamma = swung(bodies[0], np.array([0.1, 0, 0.5]))
-    return part(1, 0, np.eye(3), about), gamma
+def point_of_top(bodies: list[Any], t: Any) -> tuple[Any, Any]:
+    return point(bodies, 0, [0.1, 0, 0.5]), 0.0
 
 
-def length(t: float) -> tuple[float, float, float]:
-    return 0.7 + 0.1 * np.sin(2 * t), 0.2 * np.cos(2 * t), -0.4 * np.sin(2 * t)
+def length(t: Any) -> tuple[Any, Any]:
+    """L, L'."""
+    return 0.7 + 0.1 * np.sin(2 * t), 0.2 * np.cos(2 * t)
 
 
-def rod_of_top(bodies: list[Any], t: float) -> tuple[Any, Any]:
-    c = np.array([0.1, 0, 0.2])
-    r, R, v, w = bodies[0]
-    about, bent = swung(bodies[0], c)
-    d = r + R @ c - np.array([0, 0, 0.4])
-    rate, (long, grows, faster) = v + R @ np.cross(w, c), length(t)
-    return part(1, 0, d[None], (d @ about)[None]), np.array([d @ bent + rate @ rate - grows**2 - long * faster])
+def rod_of_top(bodies: list[Any], t: Any) -> tuple[Any, Any]:
+    c, (r, R), (long, grows) = np.array([0.1, 0, 0.2]), bodies[0], length(t)
+    return (r + R @ c - [0, 0, 0.4])[None] @ point(bodies, 0, c), -long * grows
 
 
 @pytest.mark.parametrize(
@@ -224,10 +136,10 @@ def test_a_top_that_is_tied_begins_at_the_pole_and_off_its_constraint(
     first, names = found.trajectory.states[:, 0], found.dynamics.inputs[1:]
     at = [names.index(x) for x in ("x", "y", "z", "e0", "e1", "e2", "e3", "x_dot", "y_dot", "z_dot", *"pqs")]
     assert found.closed.moves
-    J, _ = rows([(first[at[:3]], cosines(first[at[3:7]]), first[at[7:10]], first[at[10:]])], 0.0)
+    J, _ = rows([(first[at[:3]], cosines(first[at[3:7]]))], 0.0)
     moved = J @ np.r_[first[at[7:10]], first[at[10:]]]
     assert moved == pytest.approx(length(0)[0] * length(0)[1] if len(moved) == 1 else 0, abs=1e-12)
-    wanted = reference([2], [np.array([0.1, 0.15, 0.22])], rows, first[at], found.trajectory.times)
+    wanted = motion([2], [np.array([0.1, 0.15, 0.22])], rows, first[at], found.trajectory.times)
     assert np.array([column(found, x) for x in "xyz"]) == pytest.approx(wanted[:3], abs=1e-8)
     assert np.array([column(found, x) for x in "pqs"]) == pytest.approx(wanted[10:13], abs=1e-7)
     same_attitude(found, "e", wanted[3:7])
@@ -255,14 +167,10 @@ initial: {a1: 0.4, a2: 0.3, a3: 0.7, b1: 2, b2: 0.5, b3: {position: 0.1, velocit
 """
 
 
-def two_links(bodies: list[Any], t: float) -> tuple[Any, Any]:
+def two_links(bodies: list[Any], t: Any) -> tuple[Any, Any]:
     """Nine rows: one's end at the origin, the joint between them, two's end at a point of the ground."""
-    ends = [(0, [-0.25, 0, 0]), (0, [0.25, 0, 0]), (1, [-0.3, 0, 0]), (1, [0.3, 0, 0])]
-    made = [
-        (part(2, k, np.eye(3), swung(bodies[k], np.array(c))[0]), swung(bodies[k], np.array(c))[1]) for k, c in ends
-    ]
-    (a, x), (b, y), (c, z), (d, u) = made
-    return np.vstack([a, b - c, d]), np.r_[x, y - z, u]
+    joint = point(bodies, 0, [0.25, 0, 0]) - point(bodies, 1, [-0.3, 0, 0])
+    return np.vstack([point(bodies, 0, [-0.25, 0, 0]), joint, point(bodies, 1, [0.3, 0, 0])]), 0.0
 
 
 @pytest.mark.parametrize("orientation", ["f: quaternion", "alpha: 1, beta: 2, gamma: 3"])
@@ -294,51 +202,18 @@ def test_a_loop_of_bodies_told_by_quaternions_and_unit_vectors(tmp_path: Path, o
     f = Rotation.from_matrix(second[0]).as_quat()[[3, 0, 1, 2]]
     start = np.r_[first[0] @ c1, e[:, 0], v1, w1[:, 0], joint[0] + second[0] @ c2, f, v2, w2[:, 0]]
     inertias = [np.array([0.05, 0.1, 0.12]), np.array([0.06, 0.11, 0.14])]
-    wanted = reference([1, 1.5], inertias, two_links, start, found.trajectory.times)
+    wanted = motion([1, 1.5], inertias, two_links, start, found.trajectory.times)
     assert w1 == pytest.approx(wanted[10:13], abs=1e-7)
     assert w2 == pytest.approx(wanted[23:26], abs=1e-7)
     kept(found)
-
-
-TORUS = """
-mbsym: 1
-name: A wheel that rolls, its tube of radius tube
-parameters: {rho: {value: 0.4, sign: positive}, tube: {value: TUBE, sign: real}, g: {value: 9.81, sign: positive}}
-bodies:
-  - {name: centre, attached to: 0, connection point: [x, y, z], coordinates: [x, y, z], mass: 0}
-  - {name: wheel, attached to: centre, rotation: {axes: [3, 1, 3], angles: [psi, theta, phi]}, mass: 1.5,
-     inertia about: joint, inertia: [0.06, 0.12, 0.06], speeds: {p: omega1, q: omega2, s: omega3},
-     orientation: {alpha: 1, beta: 2, gamma: 3}}
-loads: [{uniform gravity: {vector: [0, 0, -g]}}]
-constraints:
-  - rolling:
-      body: wheel
-      point: [-rho*gamma1/sqrt(gamma1**2 + gamma3**2) - tube*gamma1, -tube*gamma2,
-              -rho*gamma3/sqrt(gamma1**2 + gamma3**2) - tube*gamma3]
-      on: ground
-  - relation: z = tube + rho*sqrt(1 - gamma2**2)
-initial: {x: 0, y: 0, z: 0.5, alpha1: 1, alpha2: 0, alpha3: 0, beta1: 0, beta2: 1, beta3: 0, gamma1: 0, gamma2: 0,
-          gamma3: 1, p: 0.4, q: 3, s: 0.5}
-"""
 
 
 @pytest.mark.parametrize("tube", [0.0, 0.1])
 def test_a_rolling_wheel_told_by_unit_vectors(tmp_path: Path, tube: float) -> None:
     """A disc, and a torus, upright at the pole of the angles; the contact is a function of the vertical in body axes.
 
-    Its arm in space, n the axis, k the vertical:  a = -rho d - tube k,  d = u/|u|,  u = k - (k.n) n,  n' = W x n.
     The relation of the height follows from the vertical row of rolling: of its four rows three are independent.
     """
-
-    def rows(bodies: list[Any], t: float) -> tuple[Any, Any]:
-        _, R, _, w = bodies[0]
-        k, n, W = np.array([0, 0, 1.0]), R[:, 1], R @ w
-        u, n_ = k - (k @ n) * n, np.cross(W, n)
-        u_ = -(k @ n_) * n - (k @ n) * n_
-        size = np.linalg.norm(u)
-        arm, arm_ = -0.4 * u / size - tube * k, -0.4 * (u_ / size - u * (u @ u_) / size**3)
-        return part(1, 0, np.eye(3), -cross(arm) @ R), np.cross(W, arm_)
-
     found = run(tmp_path, TORUS.replace("TUBE", str(tube)), 4)
     assert len(found.dynamics.constraints) == 4
     assert found.dynamics.constraints.rank == 3
@@ -346,7 +221,9 @@ def test_a_rolling_wheel_told_by_unit_vectors(tmp_path: Path, tube: float) -> No
     at = [names.index(x) for x in ("x", "y", "z", "x_dot", "y_dot", "z_dot", *"pqs")]
     x, y = first[at[:3]], first[at[3:]]
     assert x[2] == pytest.approx(0.4 + tube, abs=1e-14)
-    wanted = reference([1.5], [np.array([0.06, 0.12, 0.06])], rows, np.r_[x, 1, 0, 0, 0, y], found.trajectory.times)
+    wanted = motion(
+        [1.5], [np.array([0.06, 0.12, 0.06])], rolling_torus(tube), np.r_[x, 1, 0, 0, 0, y], found.trajectory.times
+    )
     assert np.array([column(found, x) for x in "xyz"]) == pytest.approx(wanted[:3], abs=1e-8)
     assert np.array([column(found, x) for x in "pqs"]) == pytest.approx(wanted[10:13], abs=1e-7)
     attitude = np.array([[column(found, f"{x}{k}") for k in (1, 2, 3)] for x in ("alpha", "beta", "gamma")])
@@ -365,7 +242,7 @@ def test_model_py_integrates_the_ball_from_the_pole() -> None:
     v = -np.cross(w, [0, 0, -0.5])
     numbers = module["complete"]()
     times, found = module["speed_simulate"](6.0, numbers, np.r_[0, 0, e, 0, 0, w], samples=41)  # v is led to the rows
-    wanted = reference([2], [np.array([0.1, 0.15, 0.22])], rolling_ball, np.r_[0, 0, 0.5, e, v, w], times)
+    wanted = motion([2], [np.array([0.1, 0.15, 0.22])], rolling_ball, np.r_[0, 0, 0.5, e, v, w], times)
     names = (*module["POSITIONS"], *module["SPEEDS"])
     led = found[:, 0] - np.r_[0, 0, e, v[:2], w]
     # The shortest way to the rows, measured by M, also turns the ball: it is begun where it was led to.

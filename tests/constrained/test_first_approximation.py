@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from flint import acb_mat, arb, ctx, fmpq
+from flint import acb, acb_mat, arb, ctx, fmpq
 
 import mbsym
 from mbsym.analysis.pipeline import Analysis
@@ -87,14 +87,13 @@ def test_the_bicycle_has_the_published_matrices(bicycle: Analysis) -> None:
 
 @pytest.mark.parametrize("speed", range(11))
 def test_the_bicycle_has_the_published_roots(bicycle: Analysis, speed: int) -> None:
+    """All fourteen decimals of the coefficients' roots; Table 2, of double precision, is off by 2e-13 (6e-13 once)."""
     with ctx.workprec(120):
         reference = json.loads((REFERENCES / "bicycle_whipple.json").read_text())["reference"]
         wanted = []
         for text in reference["eigenvalues_recomputed_50_digits"][str(speed)]:
             real, _, imaginary = text.partition("±")
-            wanted += (
-                [complex(float(real), sign * float(imaginary[:-1])) for sign in (1, -1)] if imaginary else [float(real)]
-            )
+            wanted += [acb(real, arb(imaginary[:-1] or 0) * sign) for sign in ((1, -1) if imaginary else (1,))]
         m, c, k = velocity_matrix(bicycle, numbers(bicycle, v=arb(speed), g=arb(fmpq(981, 100))))
         mass = acb_mat(2, 2, [x for row in m for x in row])
         velocity, position = (mass.solve(acb_mat(2, 2, [x for row in rows for x in row])) for rows in (c, k))
@@ -103,9 +102,13 @@ def test_the_bicycle_has_the_published_roots(bicycle: Analysis, speed: int) -> N
             first[i, 2 + i] = 1
             for j in range(2):
                 first[2 + i, j], first[2 + i, 2 + j] = -position[i, j], -velocity[i, j]
-        found = [complex(x) for x in first.eig()]
-    for root in wanted:
-        assert min(abs(root - x) for x in found) < 1e-11
+        found = first.eig()
+        for root in wanted:
+            assert min(max(abs(float((root - x).real)), abs(float((root - x).imag))) for x in found) < 5.01e-15
+        for name in ("castering", "capsize", "weave_re"):
+            printed = reference["published_table2"][name].get(str(speed)) if speed else None
+            off = 1e-12 if (name, speed) == ("castering", 7) else 2e-13
+            assert printed is None or min(abs(printed - float(x.real)) for x in found) < off
 
 
 def test_the_bicycle_is_told_by_what_remains(bicycle: Analysis) -> None:

@@ -23,6 +23,7 @@ from mbsym.report.html import writer as html
 from mbsym.report.language import Language
 from mbsym.report.latex import writer as latex
 from mbsym.report.latex.labels import Form, Labels
+from mbsym.report.sections.equations import short_equations
 
 
 @pytest.fixture(scope="module")
@@ -249,3 +250,25 @@ def test_brackets_after_a_letter_are_a_call_of_names_and_a_product_of_formulas(a
     assert writer.inline(Relation(Symbol("f"), content.Listed((variable,), brackets=True))) == "f(lambda)"
     product = writer.inline(Relation(Symbol("lambda", "1"), content.Listed((factor,), brackets=True)))
     assert product.replace(plain_writer.UNBROKEN, " ").startswith("lambda_1 (")
+
+
+@pytest.mark.parametrize(
+    ("slope", "told"),
+    [("(5*cos(p) - 3)/10", "1/10 lambda_1 (5 cos(p) - 3)"), ("-7*cos(p)/10", "-7/10 lambda_1 cos(p)")],
+)
+def test_a_sum_beside_a_multiplier_stands_in_brackets(slope: str, told: str) -> None:
+    """J^T lambda of x' + (5 c - 3)/10 p' = 0 by hand; "1/10 lambda_1 5 cos(p) - 3" was written."""
+    found = mbsym.loads(
+        f"""
+mbsym: 1
+name: Two coordinates
+bodies:
+  - {{name: A, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: 1}}
+  - {{name: B, attached to: 0, rotation: {{axes: [3], angles: [p]}}, mass: 1, mass centre: [1, 0, 0]}}
+constraints: [velocity: x_dot + ({slope})*p_dot = 0]
+""",
+        (3,),
+    )
+    _, turning = short_equations(found.equations, found.system)
+    text = plain_writer.Writer(Language(""), True).inline(turning).replace(plain_writer.UNBROKEN, " ")
+    assert text == f"p'' = {told}"

@@ -192,15 +192,15 @@ def combination(terms: Sequence[tuple[Formula, Math]]) -> Iterator[Math | str]:
     for k, (coefficient, letter) in enumerate(terms):
         ring, polynomial = coefficient.ring, coefficient.polynomial
         number = abs(content_of(polynomial))
-        shape = present(ring, polynomial, angles_or("shorter")).terms
-        minus = all(term.coefficient < 0 for term in shape)
+        minus = all(term.coefficient < 0 for term in present(ring, polynomial, angles_or("shorter")).terms)
         factor = Formula(ring, polynomial / (-number if minus else number))
         if minus or k:
             yield "-" if minus else "+"
         if number != 1:
             yield Formula(ring, ring.one * number)
         yield letter
-        if len(shape) > 1:
+        # Of the factor: (c - 1)/2 is one term, and c - 1, without its number, two.
+        if len(present(ring, factor.polynomial, angles_or("shorter")).terms) > 1:
             yield Listed((factor,), brackets=True)
         elif factor != 1:
             yield factor
