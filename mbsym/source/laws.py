@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.constants import out_of_range
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span, in_line
-from mbsym.expressions.tree import Expression, number
+from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.speeds import Quaternion
 from mbsym.source.scope import FORCE, Allowed, Scope
 
@@ -19,6 +20,18 @@ if TYPE_CHECKING:
 
 #: What a force may hold, but for other inputs.
 LAW = Allowed("the law of an input", tuple(kind for kind in FORCE.kinds if kind != "input"), FORCE.kinked)
+
+
+#: Its derivatives count, so that nothing in it may have a kink.
+GIVEN_LAW = Allowed("the law of a function of time", ("prescribed", "parameter", "time"))
+
+
+def check_law(law: Expression, scope: Scope, span: Span) -> None:
+    """Complain about a law of a function of time that holds such functions."""
+    others = sorted(names(law) & {*scope.of_kind("given")})
+    if others:
+        message = Message("the law of a function of time holds another one: [[names]]", names=", ".join(others))
+        scope.complaints.error("misplaced-name", message, span, "write its law in its place")
 
 
 #: A motion is differentiated twice.
@@ -34,6 +47,8 @@ def read_law(
     tree = parse_expression(text, complaints, place, True, tables=scope.tables)
     for expression in [tree] if tree is not None else names_apart(text, place, complaints.items[before:]):
         scope.check(expression, allowed)
+        if allowed is GIVEN_LAW:
+            check_law(expression, scope, place(0, len(text)))
     if tree is not None and (why := out_of_range(tree)):
         complaints.error("no-number", "nothing can be computed with this number: [[why]]", place(0, len(text)), why=why)
     return tree if len(complaints.items) == before else None
@@ -42,9 +57,11 @@ def read_law(
 def read_laws(system: System, laws: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
     """Laws of inputs by name as expressions in what the description's forces may hold, inputs excepted.
 
-    Raises ValueError with everything that is wrong.
+    Those of free functions of time are smooth ones in t, parameters and prescribed motions.  Raises ValueError with
+    everything that is wrong.
     """
-    return _read(system, laws, system.input_names, "input", LAW)
+    free = dict.fromkeys((item.name for item in system.given), GIVEN_LAW)
+    return _read(system, laws, dict.fromkeys(system.input_names, LAW) | free, "input")
 
 
 def read_motions(system: System, motions: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
@@ -53,15 +70,15 @@ def read_motions(system: System, motions: Mapping[str, Expression | Fraction | f
     With constraints some of them, one at least.  Raises ValueError with everything that is wrong, coordinates without a
     motion included.
     """
-    return _read(system, motions, system.coordinates, "coordinate", MOTION, not (system.constraints and motions))
+    every = not (system.constraints and motions)
+    return _read(system, motions, dict.fromkeys(system.coordinates, MOTION), "coordinate", every)
 
 
 def _read(
     system: System,
     values: Mapping[str, Expression | Fraction | float | str],
-    known: Sequence[str],
+    known: Mapping[str, Allowed],
     kind: str,
-    allowed: Allowed,
     every: bool = False,
 ) -> dict[str, Expression]:
     expressions: dict[str, Expression] = {}
@@ -70,7 +87,7 @@ def _read(
     for name, value in values.items():
         complaints = Complaints()
         if isinstance(value, str):
-            law = read_law(value, system, complaints, in_line, allowed)
+            law = read_law(value, system, complaints, in_line, known.get(name, LAW))
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             if law is not None:
                 expressions[name] = law
@@ -87,7 +104,7 @@ def _read(
 
 def _scope(system: System, complaints: Complaints) -> Scope:
     kinds = dict.fromkeys(system.parameter_names, "parameter") | dict.fromkeys(system.coordinates, "coordinate")
-    kinds |= {item.name: "prescribed" for item in system.prescribed}
+    kinds |= {item.name: "prescribed" for item in system.of_constant_rate} | {x.name: "given" for x in system.given}
     kinds |= {item.name: "notation" for item in system.notation} | dict.fromkeys(system.input_names, "input")
     kinds |= {speed.name: "speed" for speed in system.speeds}
     for vector in (vector for body in system.bodies for vector in body.orientation):
