@@ -9,7 +9,7 @@ from math import lcm
 from typing import Any
 
 from mbsym.algebra.base import Lowering, Scalar
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import NoClosedForm, NoLaw
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import TERM_BUDGET, Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -36,6 +36,7 @@ from mbsym.expressions.tree import (
 )
 from mbsym.model.loads import EXACT
 from mbsym.model.speeds import Quaternion
+from mbsym.model.substitution import lacking_law, with_laws
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: The sines and cosines of so many constant angles have places in the ring.
@@ -97,6 +98,15 @@ def rate_of(
     for name, rate in (*rates, *((item.name, lower(item.rate)) for item in system.prescribed)):
         total = total + ring.times(rate, ring.derivative(x, name))
     return ring.reduce(total)
+
+
+def settled(system: System) -> System:
+    """The system with the laws of the description put in.  Raises NoLaw where a free function of time has none."""
+    told = with_laws(system)
+    if told.given:
+        message, hint = lacking_law(told.given[0].name)
+        raise NoLaw(message, remedy=hint)
+    return told
 
 
 def _names(expression: Expression) -> set[str]:

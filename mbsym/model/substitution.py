@@ -7,7 +7,6 @@ from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from mbsym.algebra.failures import NoLaw
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import velocity_name, without_velocity
 from mbsym.expressions.tree import (
@@ -111,15 +110,6 @@ def images_of_laws(system: System, laws: Mapping[str, Expression]) -> dict[str, 
             assert value is not None
             images[name], value = value, rate(value)
     return images
-
-
-def settled(system: System) -> System:
-    """The system with the laws of the description put in.  Raises NoLaw where a free function of time has none."""
-    told = with_laws(system)
-    if told.given:
-        message, hint = lacking_law(told.given[0].name)
-        raise NoLaw(message, remedy=hint)
-    return told
 
 
 def lacking_law(name: str) -> tuple[Message, Message]:

@@ -63,7 +63,8 @@ def moving_system(source: Source) -> System:
     bodies that could move.
     """
     from mbsym.analysis.given import refuse_matrices
-    from mbsym.model.substitution import held, settled
+    from mbsym.mechanics.variables import settled
+    from mbsym.model.substitution import held
 
     system = settled(analysis_of(source).system)
     refuse_matrices(system, "no motion is integrated or searched for")

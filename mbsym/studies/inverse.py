@@ -118,7 +118,7 @@ def inverse_dynamics(
     """
     import numpy as np
 
-    from mbsym.model.substitution import settled
+    from mbsym.mechanics.variables import settled
     from mbsym.numerics.inverse import inverse_dynamics as found_for
     from mbsym.simulation import read_values
     from mbsym.source.laws import read_motions

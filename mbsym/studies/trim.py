@@ -58,7 +58,7 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
 def _asked(source: Source, request: Request) -> Asked:
     """The system with its inputs, which are looked for."""
     from mbsym.analysis.given import refuse_matrices
-    from mbsym.model.substitution import settled
+    from mbsym.mechanics.variables import settled
 
     system = settled(analysis_of(source).system)
     refuse_matrices(system, "no posture is held")
