@@ -16,7 +16,7 @@ from mbsym.model.assumptions import has_sign
 from mbsym.model.system import Given, Parameter, Prescribed, rational
 from mbsym.model.units import Declared
 from mbsym.source.keys import GIVEN, PARAMETER, PRESCRIBED, SIGN_WORDS, SIGNS
-from mbsym.source.laws import GIVEN_LAW, check_law
+from mbsym.source.laws import GIVEN_LAW
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading, keys_of
 from mbsym.source.scope import NUMBER, Allowed, did_you_mean
@@ -206,9 +206,6 @@ def read_given(entry: Entry, reading: Reading) -> Given:
     fields = reading.fields(entry.value, what, GIVEN, "write {of: t}")
     if fields.require("of", "write {of: t}") is not None:
         fields.word("of")
-    errors = reading.errors
     law: Expression | None = fields.expression("value", GIVEN_LAW)
-    if law is not None and reading.errors == errors:
-        check_law(law, reading.scope, fields.key_span("value"))
     note_unit(name, fields, reading)
     return Given(name, law, fields.text("meaning"), entry.key.span)

@@ -8,10 +8,9 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.constants import out_of_range
-from mbsym.expressions.message import Message
 from mbsym.expressions.parser import names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span, in_line
-from mbsym.expressions.tree import Expression, names, number
+from mbsym.expressions.tree import Expression, number
 from mbsym.model.speeds import Quaternion
 from mbsym.source.scope import FORCE, Allowed, Scope
 
@@ -23,15 +22,7 @@ LAW = Allowed("the law of an input", tuple(kind for kind in FORCE.kinds if kind 
 
 
 #: Its derivatives count, so that nothing in it may have a kink.
-GIVEN_LAW = Allowed("the law of a function of time", ("prescribed", "parameter", "time"))
-
-
-def check_law(law: Expression, scope: Scope, span: Span) -> None:
-    """Complain about a law of a function of time that holds such functions."""
-    others = sorted(names(law) & {*scope.of_kind("given")})
-    if others:
-        message = Message("the law of a function of time holds another one: [[names]]", names=", ".join(others))
-        scope.complaints.error("misplaced-name", message, span, "write its law in its place")
+GIVEN_LAW = Allowed("the law of a function of time", ("prescribed", "parameter", "time"), given=False)
 
 
 #: A motion is differentiated twice.
@@ -47,8 +38,6 @@ def read_law(
     tree = parse_expression(text, complaints, place, True, tables=scope.tables)
     for expression in [tree] if tree is not None else names_apart(text, place, complaints.items[before:]):
         scope.check(expression, allowed)
-        if allowed is GIVEN_LAW:
-            check_law(expression, scope, place(0, len(text)))
     if tree is not None and (why := out_of_range(tree)):
         complaints.error("no-number", "nothing can be computed with this number: [[why]]", place(0, len(text)), why=why)
     return tree if len(complaints.items) == before else None

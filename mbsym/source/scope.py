@@ -107,8 +107,8 @@ _IN_TIME = (
 class Allowed:
     """What may stand in one sort of place: ``what`` names the place in messages.
 
-    Where a prescribed motion may stand a free function of time may, where a velocity its derivative, where an input the
-    second one.
+    Unless ``given`` is false, where a prescribed motion may stand a free function of time may, where a velocity its
+    derivative, where an input the second one.
     ``kinked`` are the functions with a kink or a jump that may stand there: a force may jump, a potential may not, for
     its derivative is the force; the place of a body may not even have a kink, for its acceleration counts.
     """
@@ -116,9 +116,10 @@ class Allowed:
     what: str
     kinds: tuple[str, ...] = ("parameter",)
     kinked: tuple[str, ...] = ()
+    given: bool = True
 
     def __post_init__(self) -> None:
-        for kind, other in _IN_TIME:
+        for kind, other in _IN_TIME if self.given else ():
             if kind in self.kinds and other not in self.kinds:
                 object.__setattr__(self, "kinds", (*self.kinds, other))
 
@@ -356,6 +357,18 @@ def _enumerated(words: list[str]) -> str:
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
+#: By what is said of the place: what to write where a function of time, or a derivative of one, stands in a wrong one.
+_FUNCTION_HINTS = {
+    "the law of a function of time": "write its law in its place",
+    "the key of a motion": "what it is stands under 'given': its value",
+    "an initial value": "write the number that it is at t = 0",
+    "an unperturbed motion": "a function of time stands in 'value', without a 'rate' beside it",
+    "a mass centre": "what moves in a body is a body of its own, with that connection point",
+    "a connection point": "declare a function of its own for it",
+    "a rotation angle": "declare a function of its own for it",
+}
+
+
 def _misplaced_hint(name: str, kind: str, allowed: Allowed) -> str | None:
     if kind == "time" and allowed.what == "the rate of a prescribed motion":
         return "the rate alone, without t: psi: w where psi is w*t"
@@ -373,8 +386,10 @@ def _misplaced_hint(name: str, kind: str, allowed: Allowed) -> str | None:
         return Message("a function of time that joints hold stands under 'given': [[entry]]", entry=entry)
     if kind == "input":
         return "inputs stand in forces: 'generalized force', 'force', 'torque', and in outputs"
-    if kind == "velocity" and allowed is POTENTIAL:
+    if kind in ("velocity", "given rate") and allowed is POTENTIAL:
         return "a force that depends on velocities belongs under 'generalized force', 'damper' or 'rayleigh'"
+    if kind.startswith("given") and (hint := _FUNCTION_HINTS.get(allowed.what)) is not None:
+        return hint
     if kind in ("coordinate", "prescribed", "given") and allowed.what == "a direction":
         return "a force whose direction turns with a body is a 'force' with components in the 'axes' of that body"
     return None
