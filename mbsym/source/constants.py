@@ -204,8 +204,7 @@ def read_given(entry: Entry, reading: Reading) -> Given:
         reading.word(entry.value, what, ("t",))
         return Given(name, span=entry.key.span)
     fields = reading.fields(entry.value, what, GIVEN, "write {of: t}")
-    if fields.require("of", "write {of: t}") is not None:
-        fields.word("of")
+    fields.word("of")
     law: Expression | None = fields.expression("value", GIVEN_LAW)
     note_unit(name, fields, reading)
     return Given(name, law, fields.text("meaning"), entry.key.span)

@@ -108,7 +108,7 @@ PRESCRIBED = {
 }
 
 GIVEN = {
-    "of": Key("t: what it is a function of", Word(("t",)), required=True),
+    "of": Key("t: what it is a function of; goes without saying", Word(("t",))),
     "value": Key("its law, such as A*sin(w*t), used where numbers are wanted"),
     "meaning": _MEANING,
     "unit": Key("its unit, such as rad or m", _UNIT),

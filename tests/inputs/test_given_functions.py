@@ -327,3 +327,49 @@ def test_reports_write_derivatives_as_such() -> None:
     found = json.loads(results_json.render(analysis, (1, 2, 3)))
     assert [one["name"] for one in found["given"]] == ["x", "y"]
     assert found["prescribed"] == {}
+
+
+def test_the_editor_renames_it_with_its_derivatives() -> None:
+    from mbsym.editing.document import changes
+
+    text = described("spring with a free rest")
+    answer = changes(text, "x.yaml", [{"op": "rename", "kind": "parameter", "name": "b", "to": "rest"}])
+    assert [one["insert"] for one in answer["edits"]] == ["rest"] * 3  # its key, b_dot, b
+    assert text[answer["edits"][1]["from"] :].startswith("b_dot")
+
+
+def test_generated_code_takes_it_behind_the_parameters_or_has_its_law() -> None:
+    """By hand: l phi'' = -x'' cos(phi) - (y'' + g) sin(phi)."""
+    from mbsym.report.code import c_source, python_module
+
+    scope: dict[str, object] = {"__name__": "model"}
+    analysis = mbsym.loads(described("moving pivot", {"x": "sin(3*t)/5"}), (1, 2, 3))
+    exec(python_module.render(analysis, (1, 2, 3)), scope)
+    assert scope["PARAMETERS"] == ("m", "l", "g", "y", "y_dot", "y_ddot")
+    values = {"m": 2.0, "l": 0.5, "g": 9.81, "y": 0.4, "y_dot": 0.3, "y_ddot": 0.6}
+    t, phi = 0.7, 0.3
+    found = scope["rhs"](t, np.array([phi, 0.9]), values)  # type: ignore[operator]
+    by_hand = (9 * np.sin(3 * t) / 5 * np.cos(phi) - (0.6 + 9.81) * np.sin(phi)) / 0.5
+    assert found == pytest.approx([0.9, by_hand], rel=1e-12)
+    assert "double y_ddot;" in c_source.header(analysis, (1, 2, 3))
+
+
+def test_an_fmu_and_modelica_have_it_as_inputs() -> None:
+    from mbsym.report.exports import fmu, modelica
+
+    analysis = mbsym.loads(described("varying length", {}), ())
+    for version in (2, 3):
+        text = str(fmu.sources(analysis, version)["modelDescription.xml"])
+        for name in ("l", "l_dot", "l_ddot"):
+            assert re.search(rf'name="{name}"[^>]*causality="input"', text), (version, name)
+    assert "input Real l_ddot" in modelica.render(analysis, ())
+
+
+def test_a_periodic_law_has_the_multipliers_of_the_formula() -> None:
+    laws = {"x": "t*0", "y": "cos(40*t)/30"}
+    texts = [described("moving pivot", laws, "motion: {phi: 0}\n")]
+    texts.append(re.sub(r"given: .*\n", "", texts[0]).replace("[x, y, 0]", "[0, cos(40*t)/30, 0]"))
+    one, other = (mbsym.floquet(mbsym.loads(text, ())) for text in texts)
+    assert float(one.period) == pytest.approx(float(other.period), rel=1e-12)
+    first, second = (np.sort_complex([complex(x) for x in found.multipliers]) for found in (one, other))
+    assert np.allclose(first, second, rtol=1e-9)
