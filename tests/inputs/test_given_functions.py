@@ -371,5 +371,19 @@ def test_a_periodic_law_has_the_multipliers_of_the_formula() -> None:
     texts.append(re.sub(r"given: .*\n", "", texts[0]).replace("[x, y, 0]", "[0, cos(40*t)/30, 0]"))
     one, other = (mbsym.floquet(mbsym.loads(text, ())) for text in texts)
     assert float(one.period) == pytest.approx(float(other.period), rel=1e-12)
-    first, second = (np.sort_complex([complex(x) for x in found.multipliers]) for found in (one, other))
+    first, second = (np.sort_complex([complex(x.ball) for x in found.multipliers]) for found in (one, other))
     assert np.allclose(first, second, rtol=1e-9)
+
+
+def test_units_of_it_its_derivatives_and_its_law() -> None:
+    text = (
+        "mbsym: 1\nname: lift\nunits: {phi: rad}\nparameters: {m: {unit: kg}, l: {unit: m}, g: {unit: m/s^2}, "
+        "k: {unit: kg/s}, h: {unit: m}, w: {unit: rad/s}}\ngiven: {y: {unit: m, value: h*sin(w*t)}}\nbodies:\n"
+        f"  - {{name: rod, attached to: 0, connection point: [0, y, 0], {ROD}}}\n{GRAVITY[:-2]}, "
+        "{generalized force: {phi: k*l*y_dot}}, {generalized force: {phi: m*l*y_ddot}}]\n"
+    )
+    assert read(text, "x")[0] is not None
+    for right, wrong in (("k*l*y_dot", "k*l*y"), ("m*l*y_ddot", "m*l*y_dot"), ("h*sin", "w*sin")):
+        system, complaints = read(text.replace(right, wrong), "x")
+        assert system is None
+        assert [one.code for one in complaints.errors] == ["dimension"], wrong
