@@ -241,13 +241,16 @@ def paused() -> Iterator[None]:
             bar.start()
 
 
-def read_description(path: Path, unconstrained: str = "", moving: str = "") -> System | None:
+def read_description(path: Path, unconstrained: str = "", moving: str = "", free: bool = True) -> System | None:
     """The system of a file, or None after printing every complaint on standard error.
+
+    Unless functions of time may stay ``free`` their laws are put in, and those that have none are complained about.
 
     ``unconstrained`` names a command that does not know constraints: relations that give coordinates are put in, others
     are complained about.  ``moving`` names one that needs equations of motion, which a system that is given by its
     matrices has not.
     """
+    from mbsym.model.substitution import lacking_law, with_laws
     from mbsym.report.language import Language
     from mbsym.source import load, render
     from mbsym.source.text_lines import language_of
@@ -260,6 +263,11 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
         complain_of(system, complaints)
     if system is not None and system.constraints and unconstrained and not complaints.errors:
         system = _in_free_coordinates(path, system, unconstrained, complaints)
+    if system is not None and not free:
+        system = with_laws(system)
+        for function in system.given:
+            message, hint = lacking_law(function.name)
+            complaints.error("no-law", message, function.span, hint)
     if system is not None and system.linear is not None and moving:
         words = "'mbsym [[command]]' is about bodies, and this system is given by its matrices"
         message = Message(words, command=moving)
@@ -304,7 +312,7 @@ def read_held(file: Path, command: str, constrained: bool = False, moving: bool 
     from mbsym.expressions.tree import text
     from mbsym.model.substitution import held
 
-    system = read_description(file, "" if constrained else command, command if moving else "")
+    system = read_description(file, "" if constrained else command, command if moving else "", free=False)
     if system is None or not system.inputs:
         return system
     from mbsym.report.language import Language

@@ -28,7 +28,9 @@ class Kind:
     none: str
 
     def names(self, system: System) -> tuple[str, ...]:
-        return system.input_names if self.kind == "input" else system.coordinates
+        if self.kind == "coordinate":
+            return system.coordinates
+        return (*system.input_names, *(item.name for item in system.given))
 
 
 LAWS = Kind("--input", "input", "law", "u=sin(3*t)", "this description has no inputs; they are declared under 'inputs'")
@@ -43,7 +45,7 @@ def read_formula(text: str, system: System, what: Kind, formulas: dict[str, Expr
 
 
 def _read(text: str, system: System, what: Kind, complaints: Complaints, formulas: dict[str, Expression]) -> None:
-    from mbsym.source.laws import LAW, MOTION, read_law
+    from mbsym.source.laws import GIVEN_LAW, LAW, MOTION, read_law
     from mbsym.source.scope import did_you_mean, listed
 
     left, equals, right = text.partition("=")
@@ -64,7 +66,8 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, formula
     elif name in formulas:
         complaints.error("repeated-name", Message("[[name]] is given twice", name=f"'{name}'"), span)
     place = partial(in_line, offset=len(left) + 1)
-    law = read_law(right, system, complaints, place, LAW if what is LAWS else MOTION)
+    kind = GIVEN_LAW if name not in system.input_names and what is LAWS else LAW if what is LAWS else MOTION
+    law = read_law(right, system, complaints, place, kind)
     if law is not None and not complaints.errors:
         formulas[name] = law
 

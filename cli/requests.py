@@ -11,6 +11,7 @@ import click
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
+from mbsym.expressions.tree import ZERO
 from mbsym.studies.request import (
     Assignments,
     Errors,
@@ -106,7 +107,8 @@ def read_fields(
     first = [field for field in fields if field.name in laws] + [x for x in fields if isinstance(x.kind, Settings)]
     for field in (*first, *(field for field in fields if field not in first)):
         if isinstance(field.kind, Settings):
-            known = {name: law for name, law in values.get(field.kind.laws, {}).items() if law is not None}
+            # A law that was complained about is as good as any: nothing is computed.
+            known = {name: ZERO if law is None else law for name, law in values.get(field.kind.laws, {}).items()}
             scenario, values[field.name] = _motion(file, system, texts[field.name], field.kind, texts, known, options)
         else:
             values[field.name] = _read(field, texts[field.name], system, texts, options, scenario)

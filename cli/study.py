@@ -226,7 +226,8 @@ class _Run:
         matrices = study.matrices and not bodies
         if study.held:
             return read_held(self.file, study.name, study.constraints, not matrices)
-        return read_description(self.file, "" if study.constraints else study.name, "" if matrices else study.name)
+        refused = ["" if knows else study.name for knows in (study.constraints, matrices)]
+        return read_description(self.file, *refused, free=study.free)
 
     def _complain(self, request: Any, context: Asked | None) -> None:
         """About what does not go together."""

@@ -43,7 +43,7 @@ function part(model: Model, section: string, name: string, key: string, first: (
 /** What a single word or number under a name means. */
 function shortKey(section: string, value: string): string {
   if (section === "parameters") return /^[-+\d.]/.test(value) ? "value" : SIGNS.some(([sign]) => sign === value) ? "sign" : "meaning";
-  return { prescribed: "rate", inputs: "meaning", motion: "value", initial: "position" }[section] ?? "value";
+  return { prescribed: "rate", given: "of", inputs: "meaning", motion: "value", initial: "position" }[section] ?? "value";
 }
 
 interface Column {
@@ -71,7 +71,7 @@ function entryActions(model: Model, path: Path, title: string, before: Path | nu
 }
 
 /** What the names of a section are names of, so that they can be changed there. */
-const NAMING = new Set(["parameters", "prescribed", "inputs", "notation", "abbreviations"]);
+const NAMING = new Set(["parameters", "prescribed", "given", "inputs", "notation", "abbreviations"]);
 
 /** Records by name: parameters, prescribed motions, inputs, the motion, the initial state. */
 function records(model: Model, section: string, title: string, columns: Column[], adding: string): Section {
@@ -178,12 +178,13 @@ export function names(model: Model, key: string, words: string, path: Path, labe
 export function systemSections(model: Model): Section[] {
   const line = (key: string, label: string): Group => ({ label, rows: [single(model, `system-${key.replaceAll(" ", "-")}`, label, [key], { wide: true })] });
   const languages = (model.file.languages ?? []).map((one): [string, string] => [one, one]);
-  const known = new Set(["mbsym", "name", "description", "source", "dimensionless time", "parameters", "prescribed", "inputs", "values", "bodies", "loads", "constraints", "relations", "notation", "abbreviations", "assumptions", "motion", "initial", "claims", "outputs", "units", "latex", "limits", "tables", "small parameter", "linear system", "dependent", "reactions", "order", "language"]);
+  const known = new Set(["mbsym", "name", "description", "source", "dimensionless time", "parameters", "prescribed", "given", "inputs", "values", "bodies", "loads", "constraints", "relations", "notation", "abbreviations", "assumptions", "motion", "initial", "claims", "outputs", "units", "latex", "limits", "tables", "small parameter", "linear system", "dependent", "reactions", "order", "language"]);
   const rest = entriesOf(model.understood?.tree ?? null).filter(([key]) => !known.has(key));
   return [
     { title: "System", groups: [line("name", "Name"), line("description", "Description"), line("source", "Source"), line("dimensionless time", "Dimensionless time")] },
     records(model, "parameters", "Parameters", [{ key: "sign", options: SIGNS }, { key: "value", formula: true }, { key: "meaning" }], "a parameter"),
     records(model, "prescribed", "Prescribed motions", [{ key: "rate", formula: true }, { key: "initial", formula: true }, { key: "meaning" }], "a prescribed motion"),
+    records(model, "given", "Functions of time", [{ key: "value", formula: true }, { key: "meaning" }], "a function of time"),
     records(model, "inputs", "Inputs", [{ key: "meaning" }], "an input"),
     ...linearSystem(model),
     tables(model),

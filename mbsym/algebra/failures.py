@@ -139,6 +139,12 @@ class GivenByMatrices(Failure):
     code = "given-by-matrices"
 
 
+class NoLaw(Failure):
+    """What needs numbers, or an equation that does not hold free functions of time, was asked where one has no law."""
+
+    code = "no-law"
+
+
 class NoValue(Failure, KeyError):
     """``args[0]`` is a name without a number."""
 

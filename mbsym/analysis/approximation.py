@@ -172,19 +172,24 @@ def first_approximation(analysis: Analysis) -> Linearisation:
 
 
 def autonomous(analysis: Analysis) -> Linearisation:
-    """Problem 5: the first approximation where its coefficients are constant: the theorems of problem 6 are about it.
+    """The first approximation where its coefficients are constant: the theorems of problem 6 are about it.
 
     Raises Unavailable where they vary with time.
     """
-    linear = analysis.first_approximation
+    linear = analysis.linearisation
     if linear.varying:
         hint = steady_order(analysis)
         if not hint:
             hint = Message("choose coordinates in which the motion is steady, if there are any")
-            if not _drifting(analysis, linear):
+            free = {item.name for item in analysis.system.given}
+            if led := sorted(free & {name for entry in linear.varying for name in entry.among}):
+                hint = Message(
+                    "where laws make [[names]] periodic: mbsym floquet [[file]]", names=", ".join(led), file=FILE
+                )
+            elif not _drifting(analysis, linear):
                 hint = Message("[[hint]]; where it is periodic in time: mbsym floquet [[file]]", hint=hint, file=FILE)
         why = NoResult(linear.time_dependence, hint, "time-dependent", "time-dependent")
-        raise Unavailable("linearisation", why)
+        raise Unavailable("autonomous", why)
     return linear
 
 
@@ -203,7 +208,7 @@ def judgeable(analysis: Analysis) -> Linearisation:
     where time occurs in the nonlinear equations other than under sines and cosines, or w is not known to be positive
     and the spectrum is not symmetric (it is where D = N = 0 or D = G = 0).
     """
-    linear = analysis.linearisation
+    linear = analysis.autonomous
     scale = linear.time_scale
     symmetric = _vanish(linear.D, linear.N) or _vanish(linear.D, linear.G)
     if scale is not None and not symmetric and analysis.signs.sign(scale.polynomial) != "positive":
@@ -309,7 +314,7 @@ def steady_order(analysis: Analysis) -> str:
         return ""
     for other in rotation_orders(analysis.system):
         try:
-            type(analysis)(other.system, (), analysis.terms, suggests=False).linearisation  # noqa: B018
+            type(analysis)(other.system, (), analysis.terms, suggests=False).autonomous  # noqa: B018
         except Failure:
             continue
         axes, angles = ", ".join(map(str, other.axes)), ", ".join(other.angles)

@@ -125,7 +125,7 @@ def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool)
             return None
         numbers = {name: rationals.exact(value) for name, value in values.items()}
         carry = Carrier(analysis.parameters_scene.ring, Rationals({}, {}), numbers)
-        shown = analysis.linearisation
+        shown = analysis.autonomous
         m, d, g, k, n = (
             fmpq_mat([[fmpq(carry(x)) for x in row] for row in part.polynomials])
             for part in (shown.M, shown.D, shown.G, shown.K, shown.N)

@@ -102,7 +102,7 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         scene, manifold = analysis.parameters_scene, on_manifold(analysis)
         if balance.conserves and all(map(analysis.ring.vanishes, _acting(analysis))):
             return coasting(Because.ALIKE) if _alike(analysis, values) else by_geodesics()
-        damping = () if on_a_leaf(analysis) else analysis.linearisation.D.polynomials
+        damping = () if on_a_leaf(analysis) else analysis.autonomous.D.polynomials
         equilibrium = analysis.equilibrium
         return problem.by_energy(scene, analysis.system, equilibrium, manifold, balance.conserves, values, damping)
     except (Failure, *NOT_THERE):
@@ -130,7 +130,7 @@ def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
     Of T = v.(Y^T M Y) v/2 in independent velocities, with d/dy_k = Y_k . d/dq along the manifold; what vanishes there
     has the constraints f(q) as factors of its numerator.
     """
-    if len(analysis.linearisation.M.polynomials) == 1:
+    if len(analysis.autonomous.M.polynomials) == 1:
         return True
     ring, tied, embedded = analysis.ring, analysis.constraints, analysis.equations.embedded
     if tied.solved is None or tied.in_speeds or embedded is None:
@@ -202,7 +202,7 @@ def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial
 
     scene = analysis.parameters_scene
     try:
-        damping = analysis.linearisation.D.polynomials
+        damping = analysis.autonomous.D.polynomials
         if len(damping) != 1 or not balance.law.bounded:
             return
         manifold = on_manifold(analysis) if analysis.system.constraints else None

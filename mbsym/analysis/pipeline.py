@@ -264,10 +264,11 @@ class Analysis(Stages):
     )
     first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation, knows=Knows.MOTIONS)
     linearisation = Problem[Linearisation](
-        approximation.autonomous,
+        lambda a: a.first_approximation,
         ("linearisation", "perturbed motion"),
         knows=Knows.MOTIONS,
     )
+    autonomous = Derived["Analysis", Linearisation](approximation.autonomous, knows=Knows.MOTIONS)
     state_space: Derived[Analysis, StateSpace] = Derived(
         deriving.state_space_of, ("linearisation", "perturbed motion"), knows=Knows.MOTIONS
     )

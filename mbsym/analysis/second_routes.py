@@ -210,7 +210,8 @@ def dependent(analysis: Analysis, determined: Mapping[int, Polynomial] | None = 
 
 def residuals_of(analysis: Analysis, closed: Equations) -> Column:
     """The motion substituted into the closed equations: the second route of problem 4."""
-    forcing, ring, names = [x.polynomial for x in closed.forcing], analysis.ring, analysis.system.coordinates
+    ring, names = analysis.ring, analysis.system.coordinates
+    forcing = linearisation.with_inertia(analysis.scene, closed)
     singular = analysis.equilibrium.singular
     if singular:
         slopes = {x: [ring.derivative(f, name) for name in names] for x, f in zip(names, forcing, strict=True)}

@@ -93,7 +93,8 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
             *((x.name, x.meaning or "a parameter") for x in system.parameters),
             *((name, "a coordinate") for name in system.coordinates),
             *((velocity_name(name), "a velocity") for name in system.coordinates if velocities),
-            *((x.name, x.meaning or "prescribed") for x in system.prescribed),
+            *((x.name, x.meaning or "prescribed") for x in system.of_constant_rate),
+            *((x.name, x.meaning or "a function of time") for x in system.given),
             *((x.name, x.meaning or "an input") for x in system.inputs),
             *((x.name, "a notation") for x in system.notation),
         ]

@@ -65,8 +65,10 @@ def _name(word: str, analysis: Analysis) -> str | None:
         if energy is not None and name in energy.cyclic:
             parts.append("cyclic: T and U do not hold it")
         return "; ".join(parts)
-    others = {x.name: f"{unit_text}: prescribed, {plain(x.name)}' = {code(written(x.rate))}" for x in system.prescribed}
-    others |= {x.name: f"{unit_text}: an input" + (f", {plain(x.meaning)}" if x.meaning else "") for x in system.inputs}
+    steady = system.of_constant_rate
+    others = {x.name: f"{unit_text}: prescribed, {plain(x.name)}' = {code(written(x.rate))}" for x in steady}
+    for what, records in (("a function of time", system.given), ("an input", system.inputs)):
+        others |= {x.name: f"{unit_text}: {what}" + (f", {plain(x.meaning)}" if x.meaning else "") for x in records}
     others |= {x.name: f" = {code(written(x.value))}" for x in system.notation}
     return f"**{plain(word)}**{others[word]}" if word in others else None
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 #: Behind the name of a coordinate, a speed or a component of a unit vector.
 VELOCITY_ENDING, ACCELERATION_ENDING = "_dot", "_ddot"
 
@@ -17,6 +19,25 @@ def velocity_name(name: str) -> str:
 def acceleration_name(name: str) -> str:
     """theta_ddot of theta."""
     return name + ACCELERATION_ENDING
+
+
+def derivative_names(name: str, order: int) -> tuple[str, ...]:
+    """a, a_dot, a_ddot, a_dddot, ...: of a function of time, and of its derivatives up to an order."""
+    return (name, *(f"{name}_{'d' * k}ot" for k in range(1, order + 1)))
+
+
+def without_derivatives(name: str) -> str:
+    """a of a, a_dot, a_ddot, a_dddot, ...."""
+    return re.sub(r"_d+ot\Z", "", name)
+
+
+def derivative_of(kind: str, name: str) -> tuple[str, str]:
+    """(kind, name) as a generator is written: what is prescribed by the name a_dot as the velocity of a."""
+    if kind == "prescribed":
+        for rate, ending in ENDINGS.items():
+            if name.endswith(ending):
+                return rate, name.removesuffix(ending)
+    return kind, name
 
 
 def without_velocity(name: str) -> str:

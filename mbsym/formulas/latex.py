@@ -19,6 +19,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.expressions.rates import derivative_of
 from mbsym.expressions.table import Tabulated
 from mbsym.formulas.letters import LetterRing, lettered
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
@@ -306,9 +307,10 @@ class LatexPrinter:
             return _NAMED[g.name], f"({self._quiet(g.argument)})"
         if g.name == "pi":
             return r"\pi", ""
-        if g.kind in _DOTS:
-            return self.names[g.name].accented(_DOTS[g.kind]), ""
-        return str(self.names[g.name]), ""
+        kind, name = derivative_of(g.kind, g.name)
+        if kind in _DOTS:
+            return self.names[name].accented(_DOTS[kind]), ""
+        return str(self.names[name]), ""
 
     def wave(self, wave: Wave, exponent: int = 1) -> str:
         """``\\cos(q_1 - 2 q_2)``, ``\\sin^{2} 2 q``."""

@@ -17,6 +17,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.expressions.rates import derivative_of
 from mbsym.expressions.table import Tabulated
 from mbsym.formulas.letters import LetterRing, lettered
 from mbsym.formulas.names import greek, parts
@@ -372,8 +373,9 @@ class MathPrinter:
             return f"<mrow>{name}{APPLY}{bracketed(self._inner(g.argument))}</mrow>"
         if g.name == "pi":
             return Symbol(mi("π")).raised(exponent)
-        symbol = self.names[g.name]
-        return (symbol.dotted(_DOTS[g.kind]) if g.kind in _DOTS else symbol).raised(exponent)
+        kind, name = derivative_of(g.kind, g.name)
+        symbol = self.names[name]
+        return (symbol.dotted(_DOTS[kind]) if kind in _DOTS else symbol).raised(exponent)
 
     def wave(self, wave: Wave, exponent: int = 1) -> str:
         """The sine or cosine of a sum of angles, in brackets unless it is a multiple of one."""

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
-from mbsym.expressions.rates import ENDINGS
+from mbsym.expressions.rates import ENDINGS, derivative_of
 from mbsym.expressions.table import Tabulated
 from mbsym.formulas.letters import LetterRing, lettered
 from mbsym.formulas.shape import present, printed
@@ -135,7 +135,8 @@ class _ReadablePrinter(_PythonPrinter):
     times = " "
 
     def symbol(self, generator: Generator) -> str:
-        return readable_name(self.ring, generator.name) + _PRIMES.get(generator.kind, "")
+        kind, name = derivative_of(generator.kind, generator.name)
+        return readable_name(self.ring, name) + _PRIMES.get(kind, "")
 
 
 _PRIMES = {"velocity": "'", "acceleration": "''"}

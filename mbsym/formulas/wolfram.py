@@ -12,6 +12,7 @@ from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.expressions.rates import derivative_of
 from mbsym.expressions.table import OUTSIDE_ZERO, Curve, Table, Tabulated
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.letters import lettered
@@ -120,7 +121,8 @@ class WolframPrinter(InfixPrinter):
     def symbol(self, generator: Generator) -> str:
         moving = generator.kind in ("coordinate", "prescribed", *_PRIMES)
         if self.functions_of_time and moving:
-            return f"{self.names[generator.name]}{_PRIMES.get(generator.kind, '')}[t]"
+            kind, name = derivative_of(generator.kind, generator.name)
+            return f"{self.names[name]}{_PRIMES.get(kind, '')}[t]"
         return self.names[declared_name(generator)]
 
 

@@ -17,7 +17,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, Name, add, divide, multiply, number, subtract
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.variables import rate_of
+from mbsym.mechanics.variables import rate_of, time_derivative
 from mbsym.model.system import MotionEntry, System
 
 
@@ -25,6 +25,15 @@ def motion_values(system: System) -> dict[str, tuple[Expression, Expression]]:
     """(value, rate) for every coordinate; zero where the description names none."""
     specified = {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
     return {name: specified.get(name, (ZERO, ZERO)) for name in system.coordinates}
+
+
+def motion_derivatives(system: System) -> dict[str, tuple[Expression, Expression]]:
+    """(q', q'') of every coordinate on the unperturbed motion: its value may hold free functions of time."""
+    derivatives = {}
+    for name, (value, rate) in motion_values(system).items():
+        speed = time_derivative(value, system)
+        derivatives[name] = add(rate, speed), time_derivative(speed, system)
+    return derivatives
 
 
 #: What was found scene by scene: it is asked for again and again.
@@ -55,10 +64,10 @@ def unperturbed(scene: Scene) -> dict[int, Polynomial]:
     spinning = turning(scene)
     for system_input in scene.system.inputs:
         images |= _standing(scene, "prescribed", system_input.name, system_input.held)
-    for name, (value, rate) in motion_values(scene.system).items():
-        speed = scene.lower(rate)
-        images[ring.index("velocity", name)] = speed
-        images[ring.index("acceleration", name)] = ring.zero
+    derivatives = motion_derivatives(scene.system)
+    for name, (value, _) in motion_values(scene.system).items():
+        for kind, derivative in zip(("velocity", "acceleration"), derivatives[name], strict=True):
+            images[ring.index(kind, name)] = scene.lower(derivative)
         if name in spinning:
             continue
         images |= _standing(scene, "coordinate", name, value)
@@ -107,10 +116,8 @@ def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict
     What is prescribed counts among them.  ``rates`` are those of the motion where they are not all given.
     """
     system = scene.system
-    values = motion_values(system) | {
-        motion.name: (motion.initial or ZERO, motion.rate) for motion in system.prescribed
-    }
-    driven, images = [prescribed.name for prescribed in system.prescribed], relations(scene)
+    values = motion_values(system) | {item.name: (item.initial or ZERO, item.rate) for item in system.of_constant_rate}
+    driven, images = [item.name for item in system.of_constant_rate], relations(scene)
     if rates is None:
         if scene not in _CARRIED:
             own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
@@ -225,6 +232,11 @@ def is_steady(scene: Scene, x: Polynomial) -> bool:
 
 
 def unsteady(scene: Scene, x: Polynomial) -> tuple[str, ...]:
-    """The quantities that still vary with time in x: turning coordinates, prescribed quantities, t."""
-    moving = [*scene.system.coordinates, *(item.name for item in scene.system.prescribed), "t"]
-    return tuple(name for name in moving if scene.ring.depends_on(x, name))
+    """The quantities that still vary with time in x: turning coordinates, prescribed quantities, t.
+
+    Of a free function of time its name is told where x holds a derivative of it.
+    """
+    functions = {item.name: item.given or item.name for item in scene.system.prescribed}
+    moving = [*scene.system.coordinates, *functions, "t"]
+    held = (functions.get(name, name) for name in scene.ring.dependencies(x, moving))
+    return tuple(dict.fromkeys(held))

@@ -23,7 +23,7 @@ from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.rates import acceleration_name
 from mbsym.expressions.table import Tabulated
-from mbsym.expressions.tree import names
+from mbsym.expressions.tree import Name, names
 from mbsym.model import loads
 from mbsym.model import system as model
 from mbsym.model.system import INERTIAL, System, velocity_name
@@ -436,8 +436,10 @@ class Oracle:
         environment, values = self._constants(), self.state.values
         environment["t"] = Series(values["t"], self.numbers.one, zero)
         rates = Lowering(self.numbers, values)
+        second = {item.name: rates(item.rate) for item in self.system.prescribed}
         for item in self.system.prescribed:
-            environment[item.name] = Series(values[item.name], rates(item.rate), zero)
+            curved = half * second.get(item.rate.name, zero) if isinstance(item.rate, Name) else zero
+            environment[item.name] = Series(values[item.name], rates(item.rate), curved)
         for name in self.system.coordinates:
             speed, acceleration = values[velocity_name(name)], values[acceleration_name(name)]
             environment[name] = Series(values[name], speed, half * acceleration)

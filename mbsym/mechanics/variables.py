@@ -9,7 +9,7 @@ from math import lcm
 from typing import Any
 
 from mbsym.algebra.base import Lowering, Scalar
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import NoClosedForm, NoLaw
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import TERM_BUDGET, Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -36,6 +36,7 @@ from mbsym.expressions.tree import (
 )
 from mbsym.model.loads import EXACT
 from mbsym.model.speeds import Quaternion
+from mbsym.model.substitution import lacking_law, with_laws
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: The sines and cosines of so many constant angles have places in the ring.
@@ -91,10 +92,21 @@ def rate_of(
     rates: Iterable[tuple[str, Polynomial]] = (),
 ) -> Polynomial:
     """dx/dt: sum of rate dx/d(name) over the ``rates`` and what is prescribed, and dx/dt itself; others stand still."""
+    if any(ring.depends_on(x, name) for name in system.last_derivatives):
+        raise NoClosedForm("a derivative of a free function of time beyond those that there are names for")
     total = ring.derivative(x, "t")
     for name, rate in (*rates, *((item.name, lower(item.rate)) for item in system.prescribed)):
         total = total + ring.times(rate, ring.derivative(x, name))
     return ring.reduce(total)
+
+
+def settled(system: System) -> System:
+    """The system with the laws of the description put in.  Raises NoLaw where a free function of time has none."""
+    told = with_laws(system)
+    if told.given:
+        message, hint = lacking_law(told.given[0].name)
+        raise NoLaw(message, remedy=hint)
+    return told
 
 
 def _names(expression: Expression) -> set[str]:
@@ -219,7 +231,7 @@ def ring_of(
     adjunctions += 4 * len(system.speeds)
     ring = Ring(
         [*system.coordinates, *system.variables],
-        [*(item.name for item in system.prescribed), *system.input_names, *moving],
+        [*(item.name for item in system.prescribed), *system.last_derivatives, *system.input_names, *moving],
         [*system.parameter_names, *(item.name for item in system.notation), *fixed],
         angle_denominators(system, arguments),
         positive=[parameter.name for parameter in system.parameters if parameter.sign == "positive"],
@@ -299,7 +311,8 @@ def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:
     environment = {name: ring.generator("parameter", name) for name in system.parameter_names}
     environment |= {item.name: ring.generator("parameter", item.name) for item in system.notation}
     environment |= {item.name: ring.generator("prescribed", item.name) for item in system.prescribed}
-    environment |= {name: ring.generator("prescribed", name) for name in system.input_names}
+    driven = (*system.last_derivatives, *system.input_names)
+    environment |= {name: ring.generator("prescribed", name) for name in driven}
     for name in system.coordinates:
         environment[name] = ring.generator("coordinate", name)
         environment[velocity_name(name)] = ring.generator("velocity", name)
@@ -314,7 +327,8 @@ def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:
 
 def program_environment(system: System, program: Program) -> dict[str, Scalar]:
     """Every name as an input of a straight-line program."""
-    names_ = [*system.parameter_names, *(item.name for item in system.prescribed), *system.input_names, "t", "pi"]
+    driven = (*(item.name for item in system.prescribed), *system.last_derivatives, *system.input_names)
+    names_ = [*system.parameter_names, *driven, "t", "pi"]
     for name in system.variables:
         names_ += [name, velocity_name(name)]
     for name in system.coordinates:

@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import velocity_name, without_velocity
 from mbsym.expressions.tree import (
     ONE,
@@ -76,6 +77,45 @@ def folded(expression: Expression, images: Mapping[str, Expression]) -> Expressi
         case Operation("**", base, exponent) if is_number(folded(base, images), 1) and not names(exponent):
             return Number(Fraction(1))
     return substitute(expression, images)
+
+
+# A system with expressions in place of its free functions of time.
+
+
+def with_laws(system: System, laws: Mapping[str, Expression] | None = None) -> System:
+    """The system with laws in place of its free functions of time, their exact derivatives in place of these.
+
+    ``laws`` go before those of the description; a function that has none stays.
+    """
+    images = images_of_laws(system, laws or {})
+    if not images:
+        return system
+    free = replace(
+        system,
+        given=tuple(item for item in system.given if item.name not in images),
+        prescribed=tuple(item for item in system.prescribed if item.given not in images),
+    )
+    told: System = put(free, images, folded)
+    loads = (in_coordinates(load.written, system) for load in told.loads)
+    return replace(told, loads=tuple(load for x in loads if (load := x.simplified()) is not None))
+
+
+def images_of_laws(system: System, laws: Mapping[str, Expression]) -> dict[str, Expression]:
+    """What free functions of time and their derivatives are: by ``laws``, else by those of the description."""
+    rate = Derivation({"t": ONE} | {item.name: item.rate for item in system.of_constant_rate})
+    images: dict[str, Expression] = {}
+    for item in system.given:
+        value = laws.get(item.name, item.law)
+        for name in item.names if value is not None else ():
+            assert value is not None
+            images[name], value = value, rate(value)
+    return images
+
+
+def lacking_law(name: str) -> tuple[Message, Message]:
+    """What is said where a free function of time has no law, and what to do."""
+    hint = Message("say what it is under 'given': [[entry]]", entry=f"{name}: {{of: t, value: sin(t)}}")
+    return Message("the function of time [[name]] has no law", name=name), hint
 
 
 # A system with expressions in place of its inputs.

@@ -22,14 +22,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import acceleration_name as acceleration_name
+from mbsym.expressions.rates import derivative_names
 from mbsym.expressions.rates import velocity_name as velocity_name
 from mbsym.expressions.table import Table
-from mbsym.expressions.tree import Expression, names
+from mbsym.expressions.tree import Expression, Name, names
 from mbsym.model.basics import INERTIAL as INERTIAL
 from mbsym.model.basics import Point as Point
 from mbsym.model.basics import Vector, _span
@@ -66,13 +68,45 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Prescribed:
-    """An angle or length that is a known function of time: ``name' = rate`` (a constant), ``name(0) = initial``."""
+    """An angle or length that is a known function of time: ``name' = rate`` (a constant), ``name(0) = initial``.
+
+    ``given`` names the free function of time that it is, or is a derivative of, where it is one: no constant but the
+    next derivative, by its name, is its rate then.
+    """
 
     name: str
     rate: Expression
     initial: Expression | None = None
     meaning: str = ""
     span: Span | None = _span()
+    given: str = ""
+
+
+#: So many derivatives of a free function of time are quantities that others may depend on: bodies have accelerations.
+DERIVATIVES = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A free function of time: a symbol, as its derivatives are; ``law`` is what it is where numbers are wanted."""
+
+    name: str
+    law: Expression | None = None
+    meaning: str = ""
+    span: Span | None = _span()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """a, a', a'': what equations hold of it."""
+        return derivative_names(self.name, DERIVATIVES)
+
+    @property
+    def chain(self) -> tuple[Prescribed, ...]:
+        """a and its derivatives as prescribed quantities, each with the next one for its rate."""
+        names_ = derivative_names(self.name, DERIVATIVES + 1)
+        return tuple(
+            Prescribed(name, Name(rate), None, self.meaning, self.span, self.name) for name, rate in pairwise(names_)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,6 +268,7 @@ class System(GuessesNames):
     ``initial`` are of coordinates.
     ``dependent`` are the coordinates that the constraints express by the others; empty where that is left to mbsym.
     ``small`` is the parameter in whose powers expansions are made.
+    ``prescribed`` holds the ``chain`` of each free function of time that is ``given``, too.
     ``linear`` holds the matrices of a system that is given by these; it has no bodies then.
     """
 
@@ -242,6 +277,7 @@ class System(GuessesNames):
     bodies: tuple[Body, ...]
     description: str = ""
     prescribed: tuple[Prescribed, ...] = ()
+    given: tuple[Given, ...] = ()
     loads: tuple[Load, ...] = ()
     relations: tuple[Relation, ...] = ()
     assumptions: tuple[Assumption, ...] = ()
@@ -323,6 +359,16 @@ class System(GuessesNames):
     @property
     def input_names(self) -> tuple[str, ...]:
         return tuple(signal.name for signal in self.inputs)
+
+    @property
+    def of_constant_rate(self) -> tuple[Prescribed, ...]:
+        """What is prescribed by the description: all but free functions of time and their derivatives."""
+        return tuple(item for item in self.prescribed if not item.given)
+
+    @property
+    def last_derivatives(self) -> tuple[str, ...]:
+        """The rates of the last derivatives of free functions of time: nothing depends on them, and none has a rate."""
+        return tuple(derivative_names(item.name, DERIVATIVES + 1)[-1] for item in self.given)
 
     @property
     def newtonian_fields(self) -> tuple[NewtonianGravity, ...]:

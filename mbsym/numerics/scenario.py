@@ -20,12 +20,12 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Message, worded
-from mbsym.expressions.tree import Expression, names
+from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.expressions.tree import text as spelled
 from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.model.assumptions import broken, has_sign
 from mbsym.model.inputs import Input
-from mbsym.model.substitution import driven, folded, speeds_in_coordinates
+from mbsym.model.substitution import driven, folded, images_of_laws, lacking_law, speeds_in_coordinates, with_laws
 from mbsym.model.system import InitialValue, System, overruled, velocity_name
 
 #: Irrational values are rounded to so many bits.
@@ -127,9 +127,18 @@ def scenario(
     """
     refuse_matrices(system, "no motion is integrated")
     overrides = dict(overrides or {})
-    given_laws, inputs = laws or {}, system.inputs
+    images = images_of_laws(system, laws or {})
+    given_laws = {name: folded(law, images) for name, law in (laws or {}).items()}
+    given_laws |= {item.name: images[item.name] for item in system.given if item.name in images}
+    functions = tuple(Input(item.name, item.meaning, images.get(item.name, ZERO)) for item in system.given)
+    system = with_laws(system, given_laws)
+    inputs = (*system.inputs, *functions)
     system = driven(system, given_laws)
     numbers = _Numbers()
+    for item in system.given:
+        text, hint = lacking_law(item.name)
+        numbers.contradictions.append(Contradiction("no-law", item.name, text, hint))
+    system = replace(system, given=(), prescribed=system.of_constant_rate) if system.given else system
     _parameters(system, overrides, numbers, assumed)
     parameters = numbers.known
     missing = [name for name in system.parameter_names if name not in parameters and name not in numbers.refused]

@@ -79,6 +79,6 @@ def energy(scene: Scene, form: SpeedForm | None = None) -> Energy:
 
 
 def _cyclic(scene: Scene, ring: Ring, kinetic: Polynomial, potential: Polynomial) -> tuple[str, ...]:
-    names = [*scene.system.coordinates, *(item.name for item in scene.system.prescribed)]
+    names = [*scene.system.coordinates, *(item.name for item in scene.system.of_constant_rate)]
     lagrangian = ring.reduce(kinetic + potential)
     return tuple(name for name in names if not ring.depends_on(lagrangian, name))

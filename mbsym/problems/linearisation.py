@@ -5,8 +5,8 @@
 with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (circulatory); v are the deviations of the
 inputs from the values at which they are held, B = dQ/du (0 on the right where the system has no inputs).  Two routes:
 
-1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion: C = -df/dq', S = -df/dq,
-   B = df/du, of which D and G are the symmetric and the skew part of C, K and N those of S;
+1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion q0(t), f0 = f - M q0'':
+   C = -df0/dq', S = -df0/dq, B = df0/du, of which D and G are the symmetric and the skew part of C, K and N those of S;
 2. the Lagrangian is expanded to second order while it is built (quadratisation; Banshchikov & Vetrov, Problem 5):
    with L2 = x'.M x'/2 + x'.A x - x.P x/2 the equations are
 
@@ -44,7 +44,16 @@ from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
-from mbsym.mechanics.motion import motion_values, rate_on_motion, relations, steadied, turning, unperturbed, unsteady
+from mbsym.mechanics.motion import (
+    motion_derivatives,
+    motion_values,
+    rate_on_motion,
+    relations,
+    steadied,
+    turning,
+    unperturbed,
+    unsteady,
+)
 from mbsym.mechanics.newton_euler import applied_forces
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
@@ -188,7 +197,7 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     """
     ring, names = scene.ring, scene.system.coordinates
     at, inputs = unperturbed(scene), scene.system.input_names
-    f = [x.polynomial for x in equations.forcing]
+    f = with_inertia(scene, equations)
 
     def on_motion(rows: Sequence[Sequence[Polynomial]]) -> ScalarMatrix[Polynomial]:
         return ScalarMatrix(ring, rows).map(lambda x: ring.substitute(x, at))
@@ -198,6 +207,16 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     S = -on_motion([[ring.derivative(x, name) for name in names] for x in f])
     B = on_motion([[ring.derivative(x, name) for name in inputs] for x in f])
     return assemble(scene, equilibrium, (M, C, S, B), "linearised equations", inputs)
+
+
+def with_inertia(scene: Scene, equations: Equations) -> list[Polynomial]:
+    """f - M q0'': what vanishes on an unperturbed motion q0(t); f where that turns steadily or rests."""
+    ring, at = scene.ring, unperturbed(scene)
+    accelerations = [at[ring.index("acceleration", name)] for name in scene.system.coordinates]
+    return [
+        x.polynomial - sum(map(ring.times, row, accelerations), ring.zero)
+        for x, row in zip(equations.forcing, equations.mass_matrix.polynomials, strict=True)
+    ]
 
 
 def quadratised(scene: Scene, whole: System | None = None, order: int = 2) -> Scene[Jet]:
@@ -221,12 +240,13 @@ def quadratised(scene: Scene, whole: System | None = None, order: int = 2) -> Sc
         order,
     )
     environment = {name: Jet(value) for name, value in scene.environment.items()}
+    derivatives = motion_derivatives(system)
     for i, name in enumerate(names):
-        value, rate = values[name]
-        base = scene.environment[name] if name in spinning else scene.lower(value)
+        speed, acceleration = (scene.lower(x) for x in derivatives[name])
+        base = scene.environment[name] if name in spinning else scene.lower(values[name][0])
         environment[name] = jets.deviation(i, base)
-        environment[velocity_name(name)] = jets.deviation(len(names) + i, scene.lower(rate))
-        environment[acceleration_name(name)] = jets.zero
+        environment[velocity_name(name)] = jets.deviation(len(names) + i, speed)
+        environment[acceleration_name(name)] = Jet(acceleration)
     for name, value in held.items():
         environment[name] = jets.deviation(numbers[name], value)
     return Scene(system, jets, environment, ring)

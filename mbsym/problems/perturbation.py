@@ -25,14 +25,14 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import ZERO, Expression
+from mbsym.expressions.tree import ZERO, Expression, add
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import in_step
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.speed_states import in_time
 from mbsym.mechanics.states import SEED, Oracles, drawn
-from mbsym.mechanics.variables import ring_environment
+from mbsym.mechanics.variables import ring_environment, time_derivative
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, Check, Pair, compare, decide
 from mbsym.problems.integrals import Integral
@@ -199,7 +199,7 @@ def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: b
     values |= {name: carry(value) for name, value in dependent.parameters.items()}
     lower = Lowering(numbers, dict(values))
     values |= {system_input.name: lower(system_input.held) for system_input in system.inputs}
-    running = {prescribed.name: (prescribed.initial or ZERO, prescribed.rate) for prescribed in system.prescribed}
+    running = {item.name: (item.initial or ZERO, item.rate) for item in system.of_constant_rate}
     running |= {name: motion[name] for name in system.coordinates if not rates[name].is_zero()}
     for name, (value, rate) in running.items():  # sines and cosines of rational states are any, whatever the time
         values[name] = lower(value) + lower(rate) * values["t"]
@@ -209,8 +209,9 @@ def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: b
     for name, (value, rate) in motion.items():
         if name in at_rest:
             values[name] = lower(value)
-        values[velocity_name(name)] = lower(rate)
-        values[acceleration_name(name)] = numbers.zero
+        speed = time_derivative(value, system)
+        values[velocity_name(name)] = lower(add(rate, speed))
+        values[acceleration_name(name)] = lower(time_derivative(speed, system))
     return State(numbers, values)
 
 

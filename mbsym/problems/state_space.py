@@ -39,7 +39,7 @@ from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Matrix, Shown
 from mbsym.mechanics.constraints.expansion import combined, on_base
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import steadied, unsteady
+from mbsym.mechanics.motion import steadied
 from mbsym.model.system import velocity_name
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation
@@ -73,10 +73,9 @@ class StateSpace(Shown):
 
 
 def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibrium: Equilibrium) -> StateSpace:
-    """A, B, C, D, with ``expanded`` the system over jets; where they are constant.
+    """A, B, C, D, with ``expanded`` the system over jets; functions of the time where the motion is not steady.
 
-    Raises NoClosedForm where M couples too many coordinates, or an entry of B, C or D varies with time; SingularPoint
-    where M is singular for all parameters.
+    Raises NoClosedForm where M couples too many coordinates; SingularPoint where M is singular for all parameters.
     """
     ring, system = scene.ring, expanded.system
     n, m = len(linear.coordinates), len(linear.inputs)
@@ -91,17 +90,14 @@ def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibriu
     measured = [
         [steadied(scene, ring.substitute(row.get(k, ring.zero), images)) for k in range(2 * n + m)] for row in slopes
     ]
-    return _steady(
-        scene,
-        StateSpace(
-            states=(*system.coordinates, *system.velocities),
-            inputs=linear.inputs,
-            outputs=tuple(output.name for output in system.outputs),
-            A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in solved)]),
-            B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in solved)]),
-            C=Matrix.of(ring, [row[: 2 * n] for row in measured]),
-            D=Matrix.of(ring, [row[2 * n :] for row in measured]),
-        ),
+    return StateSpace(
+        states=(*system.coordinates, *system.velocities),
+        inputs=linear.inputs,
+        outputs=tuple(output.name for output in system.outputs),
+        A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in solved)]),
+        B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in solved)]),
+        C=Matrix.of(ring, [row[: 2 * n] for row in measured]),
+        D=Matrix.of(ring, [row[2 * n :] for row in measured]),
     )
 
 
@@ -136,31 +132,15 @@ def reduced_state_space(scene: Scene, reduced: Reduced, equilibrium: Equilibrium
             ]
         )
     measured, whole = on(measured), places + size
-    return _steady(
-        scene,
-        StateSpace(
-            states=(*(names[i] for i in expansion.coordinates), *(velocity_name(names[k]) for k in expansion.speeds)),
-            inputs=inputs,
-            outputs=tuple(channel.name for channel in system.outputs),
-            A=Matrix.of(ring, [*upper, *(row[:whole] for row in lower)]),
-            B=Matrix.of(ring, [*([ring.zero] * len(inputs) for _ in range(places)), *(row[whole:] for row in lower)]),
-            C=Matrix.of(ring, [row[:whole] for row in measured]),
-            D=Matrix.of(ring, [row[whole:] for row in measured]),
-        ),
+    return StateSpace(
+        states=(*(names[i] for i in expansion.coordinates), *(velocity_name(names[k]) for k in expansion.speeds)),
+        inputs=inputs,
+        outputs=tuple(channel.name for channel in system.outputs),
+        A=Matrix.of(ring, [*upper, *(row[:whole] for row in lower)]),
+        B=Matrix.of(ring, [*([ring.zero] * len(inputs) for _ in range(places)), *(row[whole:] for row in lower)]),
+        C=Matrix.of(ring, [row[:whole] for row in measured]),
+        D=Matrix.of(ring, [row[whole:] for row in measured]),
     )
-
-
-def _steady(scene: Scene, found: StateSpace) -> StateSpace:
-    """It, where it is constant."""
-    for letter, matrix in (("A", found.A), ("B", found.B), ("C", found.C), ("D", found.D)):
-        among = {name for row in matrix.polynomials for x in row for name in unsteady(scene, x)}
-        if among:
-            raise NoClosedForm(
-                "[[letter]] of the first-order form varies with [[names]]",
-                letter=letter,
-                names=", ".join(sorted(among)),
-            )
-    return found
 
 
 def _sum(ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Polynomial]], sign: int) -> Rows:

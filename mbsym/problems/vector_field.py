@@ -31,6 +31,7 @@ from mbsym.algebra.matrices import cramer, determinant, null_space_of_polynomial
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
+from mbsym.expressions.rates import without_derivatives
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import ring_environment
@@ -572,7 +573,7 @@ def no_variable(ring: Ring, k: int) -> NoClosedForm:
         what = Message("the constant [[formula]]", formula=str(Formula(ring, ring.context.gen(k))))
         remedy = "write a parameter in its place: its value may be any number"
     elif g.kind == "prescribed":  # an input, too
-        what = Message("[[name]], a function of the time,", name=g.name)
+        what = Message("[[name]], a function of the time,", name=without_derivatives(g.name))
     elif g.kind == "time":
         what = Message("the time")
     elif g.kind == "function" and g.name:

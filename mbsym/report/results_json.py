@@ -55,7 +55,8 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
         terms=analysis.terms,
         system=doc.Described.from_result(system),
         coordinates=list(system.coordinates),
-        prescribed={item.name: text(item.rate) for item in system.prescribed},
+        prescribed={item.name: text(item.rate) for item in system.of_constant_rate},
+        given=[doc.Given.from_result(x, text) for x in system.given] or UNSET,
         parameters=[
             doc.Parameter.from_result(item, text, unit=unit_of(system, item.name) or UNSET)
             for item in system.parameters

@@ -21,7 +21,7 @@ from mbsym.formulas.wolfram import (
 )
 from mbsym.model.system import System
 from mbsym.report.canonical import forms_of
-from mbsym.report.code.functions import prescribed_value
+from mbsym.report.code.functions import courses
 from mbsym.report.code.programs import programs_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
@@ -87,7 +87,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
         code=_code(analysis) if 3 in stages and 3 not in solved else None,
         tables=[wolfram_definition(table) for table in analysis.system.tables],
-        prescribed=[(names[item.name], prescribed_value(item)) for item in analysis.system.prescribed],
+        prescribed=[(names[name], courses(analysis.system)[name]) for name in _told(analysis.system)],
+        lawless=[item.name for item in analysis.system.given if item.law is None],
         statements=statements,
         polynomial=polynomial,
         variable=free_name("\\[Lambda]", used),
@@ -219,6 +220,12 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
     return " + ".join(written) or "0"
 
 
+def _told(system: System) -> list[str]:
+    """What is prescribed by a formula; derivatives are left to Wolfram."""
+    known = [item.name for item in system.given if item.law is not None]
+    return [*(item.name for item in system.of_constant_rate), *known]
+
+
 def _code(analysis: Analysis) -> dict[str, Any] | None:
     """Mass matrix and forcing as straight-line code over plain symbols; None if there is none."""
     system, (programs, _) = analysis.system, programs_of(analysis)
@@ -231,7 +238,14 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
     body = short_listing(programs.program, nodes, inputs, DIALECT, FILE_PROGRAM)
     if body is None:
         return {"omitted": Writer().said(program_not_printed(programs.program, nodes))}
-    prescribed = {names[item.name]: prescribed_value(item) for item in system.prescribed if item.name in body.inputs}
+    prescribed, known = {}, courses(system)
+    for item in system.prescribed:
+        if item.name in body.inputs:
+            prescribed[names[item.name]] = wolfram_expression(known[item.name], names) if not item.given else ""
+    for function in system.given:
+        for order, name in enumerate(function.names):
+            if names[name] in prescribed:
+                prescribed[names[name]] = f"{names[function.name]}{chr(39) * order}[t]"
     return {
         "positions": [names[name] for name in system.coordinates],
         "velocities": [names[name] for name in system.velocities],

@@ -22,9 +22,10 @@ from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system, in_formulas
 from mbsym.source.claims import enter_symbols, leave_symbols, read_abbreviations, read_claims
 from mbsym.source.constants import (
-    declare_prescribed,
+    declare_in_time,
     declared_by_use,
     note_unit,
+    read_given,
     read_parameters,
     read_prescribed,
     read_values,
@@ -67,7 +68,8 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         fields.require("bodies")
     tables = read_tables(fields.get("tables"), reading)
     parameters = read_parameters(fields.get("parameters"), reading)
-    prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
+    prescribed_entries = declare_in_time(fields.get("prescribed"), "prescribed", reading)
+    given_entries = declare_in_time(fields.get("given"), "given", reading)
     inputs = read_inputs(fields.get("inputs"), reading)
     before = complaints.error_count
     drafts = draft_bodies(fields.get("bodies"), reading)
@@ -76,6 +78,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
     for draft in drafts:
         declare_speeds(draft, reading)
     prescribed = tuple(read_prescribed(entry, reading) for entry in prescribed_entries)
+    given = tuple(read_given(entry, reading) for entry in given_entries)
     parameters = read_values(fields.get("values"), parameters, reading)
     relations = read_relations(fields.get("relations"), reading)
     bodies, sound = [], []
@@ -103,7 +106,8 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         parameters=tuple(parameters),
         bodies=tuple(bodies),
         description=fields.text("description"),
-        prescribed=prescribed,
+        prescribed=(*prescribed, *(item for function in given for item in function.chain)),
+        given=given,
         tables=tables,
         inputs=with_held(inputs, held_values(motion, reading)),
         outputs=outputs,

@@ -325,9 +325,10 @@ def check_system(system: System, reading: Reading) -> None:
 def _check_use(system: System, reading: Reading) -> None:
     """Every parameter and prescribed motion occurs somewhere outside of its own declaration."""
     used = {relation.name for relation in system.relations}
-    used |= set(_occurring([getattr(system, field.name) for field in fields(system)]))
+    declared_alone = replace(system, prescribed=system.of_constant_rate)
+    used |= set(_occurring([getattr(declared_alone, field.name) for field in fields(system)]))
     declared = [(Message("parameter"), parameter.name, parameter.span) for parameter in system.parameters]
-    declared += [(Message("prescribed motion"), prescribed.name, prescribed.span) for prescribed in system.prescribed]
+    declared += [(Message("prescribed motion"), item.name, item.span) for item in system.of_constant_rate]
     if system.linear is None:  # whose B has a column for each
         felt = set(_occurring(system.loads))
         declared += [
@@ -335,6 +336,9 @@ def _check_use(system: System, reading: Reading) -> None:
             for system_input in system.inputs
             if system_input.name not in felt
         ]
+    for function in system.given:
+        if used.isdisjoint(function.names):
+            declared.append((Message("function of time"), function.name, function.span))
     for what, name, span in declared:
         if name not in used or what == "input":
             message = Message("the [[what]] '[[name]]' is used nowhere", what=what, name=name)

@@ -13,9 +13,10 @@ from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
 from mbsym.model.assumptions import has_sign
-from mbsym.model.system import Parameter, Prescribed, rational
+from mbsym.model.system import Given, Parameter, Prescribed, rational
 from mbsym.model.units import Declared
-from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGN_WORDS, SIGNS
+from mbsym.source.keys import GIVEN, PARAMETER, PRESCRIBED, SIGN_WORDS, SIGNS
+from mbsym.source.laws import GIVEN_LAW
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading, keys_of
 from mbsym.source.scope import NUMBER, Allowed, did_you_mean
@@ -172,12 +173,12 @@ def read_values(node: Node | None, parameters: list[Parameter], reading: Reading
     return list(by_name.values())
 
 
-def declare_prescribed(node: Node | None, reading: Reading) -> list[Entry]:
-    """The entries of ``prescribed`` whose names are good; their rates are read once all names are known."""
+def declare_in_time(node: Node | None, kind: str, reading: Reading) -> list[Entry]:
+    """The entries of ``prescribed`` or ``given`` whose names are good; what they are is read once names are known."""
     if node is None:
         return []
-    entries = reading.entries(node, "'prescribed'")
-    return [entry for entry in entries if reading.scope.declare(entry.key.text, "prescribed", entry.key.span)]
+    entries = reading.entries(node, f"'{kind}'")
+    return [entry for entry in entries if reading.scope.declare(entry.key.text, kind, entry.key.span)]
 
 
 def read_prescribed(entry: Entry, reading: Reading) -> Prescribed:
@@ -190,3 +191,20 @@ def read_prescribed(entry: Entry, reading: Reading) -> Prescribed:
     note_unit(name, fields, reading)
     initial: Expression | None = fields.expression("initial", Allowed("an initial value"))
     return Prescribed(name, rate, None if initial == ZERO else initial, fields.text("meaning"), entry.key.span)
+
+
+def read_given(entry: Entry, reading: Reading) -> Given:
+    """``a: {of: t, value: A*sin(w*t)}`` or ``a: t``."""
+    name, what = entry.key.text, Message("the function of time [[name]]", name=ascii_safe(entry.key.text))
+    last = Given(name).chain[-1].rate
+    for taken in names(last) & reading.scope.kinds.keys():
+        message = Message("[[taken]] is what a derivative of '[[name]]' is called", taken=f"'{taken}'", name=name)
+        reading.error("repeated-name", message, entry.key.span, "choose another name")
+    if isinstance(entry.value, Scalar):
+        reading.word(entry.value, what, ("t",))
+        return Given(name, span=entry.key.span)
+    fields = reading.fields(entry.value, what, GIVEN, "write {of: t}")
+    fields.word("of")
+    law: Expression | None = fields.expression("value", GIVEN_LAW)
+    note_unit(name, fields, reading)
+    return Given(name, law, fields.text("meaning"), entry.key.span)

@@ -107,6 +107,13 @@ PRESCRIBED = {
     "unit": Key("its unit, such as rad or m", _UNIT),
 }
 
+GIVEN = {
+    "of": Key("t: what it is a function of; goes without saying", Word(("t",))),
+    "value": Key("its law, such as A*sin(w*t), used where numbers are wanted"),
+    "meaning": _MEANING,
+    "unit": Key("its unit, such as rad or m", _UNIT),
+}
+
 INPUT = {
     "meaning": _MEANING,
     "unit": Key("its unit, such as N*m or N", _UNIT),
@@ -599,9 +606,14 @@ SYSTEM = {
     ),
     "prescribed": Key(
         "known functions of time with a constant rate: {name: {rate, initial, meaning}} or {name: rate}; "
-        "other functions of t may stand in joints",
+        "formulas in t may stand in joints, too",
         Named(Either((_FORMULA, Record(PRESCRIBED, "A prescribed quantity", alone="rate")))),
         label="prescribed motions",
+    ),
+    "given": Key(
+        "free functions of time: {a: {of: t}}; a, a_dot and a_ddot stay symbols, in joints as in loads",
+        Named(Record(GIVEN, "A free function of time", alone="of")),
+        label="given functions of time",
     ),
     "inputs": Key(
         "known functions of time that are chosen later, for forces and torques: {u: {meaning, unit}}",

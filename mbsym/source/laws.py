@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING
@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 
 #: What a force may hold, but for other inputs.
 LAW = Allowed("the law of an input", tuple(kind for kind in FORCE.kinds if kind != "input"), FORCE.kinked)
+
+
+#: Its derivatives count, so that nothing in it may have a kink.
+GIVEN_LAW = Allowed("the law of a function of time", ("prescribed", "parameter", "time"), given=False)
 
 
 #: A motion is differentiated twice.
@@ -42,9 +46,11 @@ def read_law(
 def read_laws(system: System, laws: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
     """Laws of inputs by name as expressions in what the description's forces may hold, inputs excepted.
 
-    Raises ValueError with everything that is wrong.
+    Those of free functions of time are smooth ones in t, parameters and prescribed motions.  Raises ValueError with
+    everything that is wrong.
     """
-    return _read(system, laws, system.input_names, "input", LAW)
+    free = dict.fromkeys((item.name for item in system.given), GIVEN_LAW)
+    return _read(system, laws, dict.fromkeys(system.input_names, LAW) | free, "input")
 
 
 def read_motions(system: System, motions: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
@@ -53,15 +59,15 @@ def read_motions(system: System, motions: Mapping[str, Expression | Fraction | f
     With constraints some of them, one at least.  Raises ValueError with everything that is wrong, coordinates without a
     motion included.
     """
-    return _read(system, motions, system.coordinates, "coordinate", MOTION, not (system.constraints and motions))
+    every = not (system.constraints and motions)
+    return _read(system, motions, dict.fromkeys(system.coordinates, MOTION), "coordinate", every)
 
 
 def _read(
     system: System,
     values: Mapping[str, Expression | Fraction | float | str],
-    known: Sequence[str],
+    known: Mapping[str, Allowed],
     kind: str,
-    allowed: Allowed,
     every: bool = False,
 ) -> dict[str, Expression]:
     expressions: dict[str, Expression] = {}
@@ -70,7 +76,7 @@ def _read(
     for name, value in values.items():
         complaints = Complaints()
         if isinstance(value, str):
-            law = read_law(value, system, complaints, in_line, allowed)
+            law = read_law(value, system, complaints, in_line, known.get(name, LAW))
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             if law is not None:
                 expressions[name] = law
@@ -87,7 +93,7 @@ def _read(
 
 def _scope(system: System, complaints: Complaints) -> Scope:
     kinds = dict.fromkeys(system.parameter_names, "parameter") | dict.fromkeys(system.coordinates, "coordinate")
-    kinds |= {item.name: "prescribed" for item in system.prescribed}
+    kinds |= {item.name: "prescribed" for item in system.of_constant_rate} | {x.name: "given" for x in system.given}
     kinds |= {item.name: "notation" for item in system.notation} | dict.fromkeys(system.input_names, "input")
     kinds |= {speed.name: "speed" for speed in system.speeds}
     for vector in (vector for body in system.bodies for vector in body.orientation):

@@ -13,7 +13,7 @@ from mbsym.source.scope import Allowed
 
 #: What describes bodies, and has no meaning beside matrices.
 OF_BODIES = (
-    *("bodies", "loads", "constraints", "dependent", "reactions", "prescribed", "tables", "motion", "initial"),
+    *("bodies", "loads", "constraints", "dependent", "reactions", "prescribed", "given", "tables", "motion", "initial"),
     *("limits", "outputs"),
 )
 

@@ -36,6 +36,9 @@ _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _KINDS = {
     "parameter": "a parameter",
     "prescribed": "a prescribed motion",
+    "given": "a function of time",
+    "given rate": "the derivative of a function of time",
+    "given acceleration": "the second derivative of a function of time",
     "coordinate": "a coordinate",
     "velocity": "a velocity",
     "time": "the time",
@@ -57,6 +60,9 @@ _KINDS = {
 _PLURALS = {
     "parameter": "parameters",
     "prescribed": "prescribed motions",
+    "given": "functions of time",
+    "given rate": "their derivatives",
+    "given acceleration": "second derivatives of these",
     "coordinate": "coordinates",
     "velocity": "velocities",
     "time": "t",
@@ -77,6 +83,7 @@ _PLURALS = {
 }
 #: Kinds of names that are told where the description has some.
 _RARE = (
+    *("given", "given rate", "given acceleration"),
     "speed",
     "input",
     "input abbreviation",
@@ -88,10 +95,20 @@ _RARE = (
 )
 
 
+_IN_TIME = (
+    ("prescribed", "given"),
+    ("velocity", "given rate"),
+    ("input", "given acceleration"),
+    ("acceleration", "given acceleration"),
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Allowed:
     """What may stand in one sort of place: ``what`` names the place in messages.
 
+    Unless ``given`` is false, where a prescribed motion may stand a free function of time may, where a velocity its
+    derivative, where an input the second one.
     ``kinked`` are the functions with a kink or a jump that may stand there: a force may jump, a potential may not, for
     its derivative is the force; the place of a body may not even have a kink, for its acceleration counts.
     """
@@ -99,6 +116,12 @@ class Allowed:
     what: str
     kinds: tuple[str, ...] = ("parameter",)
     kinked: tuple[str, ...] = ()
+    given: bool = True
+
+    def __post_init__(self) -> None:
+        for kind, other in _IN_TIME if self.given else ():
+            if kind in self.kinds and other not in self.kinds:
+                object.__setattr__(self, "kinds", (*self.kinds, other))
 
 
 NUMBER = Allowed("a numerical value", (), KINKED)
@@ -181,8 +204,11 @@ class Scope:
         if dots := len(name) - len(name.rstrip("'")):  # theta', as formulas have it
             name = name[:-dots] + ("", VELOCITY_ENDING, ACCELERATION_ENDING)[min(dots, 2)]
         for suffix, kind in ((VELOCITY_ENDING, "velocity"), (ACCELERATION_ENDING, "acceleration")):
-            if name.endswith(suffix) and self.kinds.get(name.removesuffix(suffix)) == "coordinate":
+            base = self.kinds.get(name.removesuffix(suffix)) if name.endswith(suffix) else None
+            if base == "coordinate":
                 return kind
+            if base == "given":
+                return "given rate" if kind == "velocity" else "given acceleration"
         if self.kinds.get(without_velocity(name)) in ("speed", "unit vector", "quaternion"):
             return "acceleration"  # what the equations give
         return None
@@ -252,10 +278,9 @@ class Scope:
             message = Message("unknown name [[name]]", name=ascii_safe(name))
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
         elif kind not in allowed.kinds:
+            told = {*self.kinds.values()} | {other for _, other in _IN_TIME if self.of_kind("given")}
             kinds = [
-                allowed_kind
-                for allowed_kind in allowed.kinds
-                if allowed_kind not in _RARE or self.of_kind(allowed_kind)
+                allowed_kind for allowed_kind in allowed.kinds if allowed_kind not in _RARE or allowed_kind in told
             ]
             held = _enumerated([_PLURALS[allowed_kind] for allowed_kind in kinds]) or "numbers"
             message = Message(
@@ -288,9 +313,9 @@ class Scope:
             return Message("accelerations are what the equations are solved for; [[why]]", why=none)
         known = [other for other, kind in self.kinds.items() if kind in allowed.kinds and other not in self.beside]
         if "velocity" in allowed.kinds:
-            known += [velocity_name(coordinate) for coordinate in self.of_kind("coordinate")]
+            known += [velocity_name(coordinate) for coordinate in self.of_kind("coordinate", "given")]
         if "acceleration" in allowed.kinds:
-            known += [acceleration_name(coordinate) for coordinate in self.of_kind("coordinate")]
+            known += [acceleration_name(coordinate) for coordinate in self.of_kind("coordinate", "given")]
         if self.kinds.get(without_velocity(name)) == "input":
             return "an input is any function of time: what depends on its rate is no load of this system"
         close = did_you_mean(name, filter(_IDENTIFIER.match, known))
@@ -332,6 +357,18 @@ def _enumerated(words: list[str]) -> str:
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
+#: By what is said of the place: what to write where a function of time, or a derivative of one, stands in a wrong one.
+_FUNCTION_HINTS = {
+    "the law of a function of time": "write its law in its place",
+    "the key of a motion": "what it is stands under 'given': its value",
+    "an initial value": "write the number that it is at t = 0",
+    "an unperturbed motion": "a function of time stands in 'value', without a 'rate' beside it",
+    "a mass centre": "what moves in a body is a body of its own, with that connection point",
+    "a connection point": "declare a function of its own for it",
+    "a rotation angle": "declare a function of its own for it",
+}
+
+
 def _misplaced_hint(name: str, kind: str, allowed: Allowed) -> str | None:
     if kind == "time" and allowed.what == "the rate of a prescribed motion":
         return "the rate alone, without t: psi: w where psi is w*t"
@@ -345,15 +382,15 @@ def _misplaced_hint(name: str, kind: str, allowed: Allowed) -> str | None:
     if kind == "table":
         return "a table is called with its argument, as in torque(t)"
     if kind == "input" and allowed.what in ("a connection point", "a rotation angle"):
-        return (
-            "a coordinate in its place: the other equations hold for every function of the time, x'' a symbol in them, "
-            "and its own gives the force that moves it so; or a formula in t, or a table"
-        )
+        entry = f"{name}: {{of: t}}"
+        return Message("a function of time that joints hold stands under 'given': [[entry]]", entry=entry)
     if kind == "input":
         return "inputs stand in forces: 'generalized force', 'force', 'torque', and in outputs"
-    if kind == "velocity" and allowed is POTENTIAL:
+    if kind in ("velocity", "given rate") and allowed is POTENTIAL:
         return "a force that depends on velocities belongs under 'generalized force', 'damper' or 'rayleigh'"
-    if kind in ("coordinate", "prescribed") and allowed.what == "a direction":
+    if kind.startswith("given") and (hint := _FUNCTION_HINTS.get(allowed.what)) is not None:
+        return hint
+    if kind in ("coordinate", "prescribed", "given") and allowed.what == "a direction":
         return "a force whose direction turns with a body is a 'force' with components in the 'axes' of that body"
     return None
 

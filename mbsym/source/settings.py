@@ -105,7 +105,8 @@ def read_comparisons(scalar: Scalar, reading: Reading, allowed: Allowed) -> list
 
 def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
     """``theta: 0`` or ``phi: {value: 0, rate: Omega}``; an empty mapping is the rest of all coordinates at 0."""
-    allowed = Allowed("an unperturbed motion")
+    allowed, moving = Allowed("an unperturbed motion"), Allowed("an unperturbed motion", ("parameter", "given"))
+    forces = Allowed("an unperturbed motion", (*moving.kinds, "given rate", "given acceleration"))
     if isinstance(node, Mapping) and not node.entries:
         return tuple(MotionEntry(name, ZERO, ZERO, node.span) for name in reading.scope.of_kind("coordinate"))
     entries = []
@@ -119,15 +120,16 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
             fields = reading.fields(
                 entry.value, Message("the motion of [[what]]", what=ascii_safe(entry.key.text)), MOTION
             )
-            value = fields.expression("value", allowed) or ZERO
             rate = fields.expression("rate", allowed) or ZERO
+            value = fields.expression("value", moving if rate == ZERO else allowed) or ZERO
             if "rate" in keys_of(entry.value) and reading.scope.kinds.get(entry.key.text) == "input":
                 message = Message(
                     "the input [[what]] is constant on the unperturbed motion", what=ascii_safe(entry.key.text)
                 )
                 reading.error("misplaced-key", message, fields.key_span("rate"), "leave 'rate' out")
         else:
-            value = reading.expression(entry.value, allowed)
+            is_input = reading.scope.kinds.get(entry.key.text) == "input"
+            value = reading.expression(entry.value, forces if is_input else moving)
         if known:
             entries.append(MotionEntry(entry.key.text, value, rate, entry.key.span))
     return tuple(entries)

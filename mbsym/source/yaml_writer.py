@@ -22,6 +22,7 @@ from mbsym.model.loads import Load
 from mbsym.model.speeds import OMEGA, Speed
 from mbsym.model.system import (
     Body,
+    Given,
     Inertia,
     InitialValue,
     MotionEntry,
@@ -55,7 +56,8 @@ def system_shape(system: System) -> dict[str, Shape]:
         "language": system.language,
         "order": [*system.order],
         "parameters": {one.name: parameter_shape(one) for one in system.parameters},
-        "prescribed": {one.name: prescribed_shape(one) for one in system.prescribed},
+        "prescribed": {one.name: prescribed_shape(one) for one in system.of_constant_rate},
+        "given": {one.name: given_shape(one) for one in system.given},
         "inputs": {one.name: input_shape(one) for one in system.inputs},
         "tables": {one.name: table_shape(one) for one in system.tables},
         "units": {one.name: one.text for one in system.units.declared},
@@ -100,6 +102,15 @@ def prescribed_shape(prescribed: Prescribed) -> dict[str, Shape]:
         shape["initial"] = text(prescribed.initial)
     if prescribed.meaning:
         shape["meaning"] = prescribed.meaning
+    return shape
+
+
+def given_shape(given: Given) -> dict[str, Shape]:
+    shape: dict[str, Shape] = {"of": "t"}
+    if given.law is not None:
+        shape["value"] = text(given.law)
+    if given.meaning:
+        shape["meaning"] = given.meaning
     return shape
 
 

@@ -59,12 +59,14 @@ def analysis_of(source: Source) -> Analysis:
 def moving_system(source: Source) -> System:
     """The system; its inputs, where it has any, at the values of the unperturbed motion.
 
-    Raises GivenByMatrices where there are no bodies that could move.
+    Its free functions of time are their laws.  Raises NoLaw where one has none, GivenByMatrices where there are no
+    bodies that could move.
     """
     from mbsym.analysis.given import refuse_matrices
+    from mbsym.mechanics.variables import settled
     from mbsym.model.substitution import held
 
-    system = analysis_of(source).system
+    system = settled(analysis_of(source).system)
     refuse_matrices(system, "no motion is integrated or searched for")
     return held(system)
 

@@ -118,10 +118,11 @@ def inverse_dynamics(
     """
     import numpy as np
 
+    from mbsym.mechanics.variables import settled
     from mbsym.numerics.inverse import inverse_dynamics as found_for
     from mbsym.simulation import read_values
     from mbsym.source.laws import read_motions
 
-    system = analysis_of(source).system
+    system = settled(analysis_of(source).system)
     moments = np.asarray(list(times), dtype=float)
     return found_for(system, read_motions(system, motion), read_values(system, values or {}), moments)

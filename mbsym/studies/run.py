@@ -373,6 +373,6 @@ PAIRS: list[Among | Needed] = [
 ]
 
 STUDY = Study(
-    "run", Command, run.derive, answer, refusal, constraints=True, matrices=True, held=False, timed=True, letters=True,
-    out=Folder(json=True), pairs=PAIRS, several=True,
+    "run", Command, run.derive, answer, refusal, constraints=True, matrices=True, held=False, free=True, timed=True,
+    letters=True, out=Folder(json=True), pairs=PAIRS, several=True,
 )  # fmt: skip

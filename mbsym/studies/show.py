@@ -253,6 +253,6 @@ PAIRS = [
 ]
 
 STUDY = Study(
-    "show", Request, derive, answer, refusal, unfit, constraints=True, matrices=True, held=False, out=None,
+    "show", Request, derive, answer, refusal, unfit, constraints=True, matrices=True, held=False, free=True, out=None,
     letters=True, pairs=PAIRS,
 )  # fmt: skip

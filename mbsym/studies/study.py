@@ -326,8 +326,9 @@ class Study(Generic[R, F]):
     ``typed``.  ``pairs``: options that do not go together, or not alone, whatever the system is.
 
     ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
-    not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
-    go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
+    not, by the texts of the options; ``held``: whether inputs are held at their constant values; ``free``: whether
+    functions of time without a law are understood.  ``out``: where files go; ``writes``: whether there are any, by what
+    was typed; ``document`` makes the single one.  ``timed``: whether the
     seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``several``: whether many
     descriptions, and folders of them, may be asked about at once; ``together`` compares their results.  ``rare``:
     fields whose options stand in ``mbsym explain`` where ``--help`` would fill more than a screen.
@@ -345,6 +346,7 @@ class Study(Generic[R, F]):
     matrices: bool = False
     bodies: Callable[[Mapping[str, Any]], bool] = lambda texts: False
     held: bool = True
+    free: bool = False
     out: Folder | Single | None = Folder()
     writes: Callable[[Collection[str]], bool] = lambda typed: True
     document: Callable[[Asked, R, F], Document] | None = None

@@ -58,8 +58,9 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
 def _asked(source: Source, request: Request) -> Asked:
     """The system with its inputs, which are looked for."""
     from mbsym.analysis.given import refuse_matrices
+    from mbsym.mechanics.variables import settled
 
-    system = analysis_of(source).system
+    system = settled(analysis_of(source).system)
     refuse_matrices(system, "no posture is held")
     for reason in unfit(Asked(system), request):
         raise ValueError(reason.message)

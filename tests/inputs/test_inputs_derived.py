@@ -13,7 +13,6 @@ import sympy
 from terminal import told
 
 import mbsym
-from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
 from mbsym.formulas.formula import Matrix
 from mbsym.problems.checks import EXACT
@@ -251,12 +250,15 @@ def test_the_file_of_results_follows_its_schema() -> None:
         assert "state_space" in found
 
 
-def test_where_there_is_no_first_order_form_the_reason_is_told() -> None:
+def test_the_first_order_form_may_vary_with_time() -> None:
     timely = DRIVEN.replace("k*U", "k*U*(1 + t)").replace("U: U0", "U: 0").replace("theta: th0", "theta: 0")
     analysis: Analysis = mbsym.loads(timely)
     assert str(analysis.linearisation.B[0, 0]) in ("k*(t + 1)", "k*t + k")  # type: ignore[index]
-    with pytest.raises(Failure, match="B of the first-order form varies with t"):
-        _ = analysis.state_space
+    # theta'' = -(...) + k (1 + t) U/M: the same column, over the inertia.
+    inertia, gain = analysis.linearisation.M[0, 0].polynomial, analysis.state_space.B[1, 0].polynomial
+    ring = analysis.ring
+    assert ring.is_zero(gain * inertia - analysis.linearisation.B[0, 0].polynomial) is True  # type: ignore[index]
+    assert ring.depends_on(gain, "t")
 
 
 def test_a_table_that_jumps_is_called_by_another_name_where_formulas_hold_it_without_its_jumps() -> None:

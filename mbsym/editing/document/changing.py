@@ -161,7 +161,7 @@ def corresponds(old: Any, new: Any, done: Meant) -> bool:
 
 
 def _renamed(name: str, names: Map[str, str]) -> str:
-    for ending in ("", "_dot", "_ddot"):
+    for ending in ("", "_dot", "_ddot", "_dddot"):  # the last one of functions of time alone
         stem = name.removesuffix(ending) if ending else name
         if stem in names and name == stem + ending:
             return names[stem] + ending

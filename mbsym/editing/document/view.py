@@ -349,7 +349,7 @@ def coordinates_of(document: Written, tree: Mapping, body: Node, index: int) -> 
         return [node.text]
     rotation = child(body, "rotation")
     angles = child(rotation, "angles") if rotation is not None else None
-    declared = {name for key in ("parameters", "prescribed", "inputs") for name in _names_in(child(tree, key))}
+    declared = {name for key in ("parameters", "prescribed", "given", "inputs") for name in _names_in(child(tree, key))}
     alone = (angle_name(tree) for tree in _trees(angles) if tree is not None)
     return list(dict.fromkeys(name for name in alone if name is not None and name not in declared))
 
@@ -397,6 +397,7 @@ def rates_of(document: Written, tree: Mapping) -> dict[str, Expression]:
         rate = None if node is None else _tree(node)
         if rate is not None:
             rates[entry.key.text] = rate
+    rates |= {name: Name(velocity_name(name)) for name in _names_in(child(tree, "given"))}
     bodies = child(tree, "bodies")
     for index, body in enumerate(bodies.items if isinstance(bodies, Sequence) else ()):
         for name in coordinates_of(document, tree, body, index):

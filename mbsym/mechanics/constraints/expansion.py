@@ -32,7 +32,7 @@ from mbsym.algebra.signs import Signs
 from mbsym.mechanics.constraints.rows import Row as ConstraintRow
 from mbsym.mechanics.constraints.rows import constraint_rows
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import carried, motion_values, relations
+from mbsym.mechanics.motion import carried, motion_derivatives, motion_values, relations
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.model.system import System, acceleration_name, velocity_name
 
@@ -256,15 +256,19 @@ def _completed(scene: Scene, signs: Signs) -> Base:
     names, values = system.coordinates, motion_values(system)
     specified = {entry.coordinate for entry in system.motion}
     open_ones = [i for i, name in enumerate(names) if name not in specified]
-    rates = [scene.lower(values[name][1]) for name in names]
+    derivatives = motion_derivatives(system)
+    rates, accelerations = ([scene.lower(derivatives[name][k]) for name in names] for k in (0, 1))
     images = relations(scene)
-    turning = {name for name, rate in zip(names, rates, strict=True) if not ring.substitute(rate, images).is_zero()}
+    led = {name for name in names if derivatives[name][0] != values[name][1]}  # by free functions of time
+    turning = {
+        name for name, rate in zip(names, rates, strict=True) if not ring.substitute(rate, images).is_zero()
+    } - led
     related = _related(scene, rates)
     for _ in range(MOST_ROUNDS):
         places = tuple(scene.environment[name] if name in turning else scene.lower(values[name][0]) for name in names)
-        still = Base(places, frozenset(turning), tuple(rates), (ring.zero,) * len(names), related)
+        still = Base(places, frozenset(turning), tuple(rates), tuple(accelerations), related)
         moving = replace(still, rates=_followed(scene, signs, still, still.rates, open_ones, "g"))
-        moving_names = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()}
+        moving_names = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()} - led
         related = _related(scene, moving.rates)
         if moving_names <= turning and related == still.related:
             return replace(moving, accelerations=_followed(scene, signs, moving, still.accelerations, open_ones, "h"))

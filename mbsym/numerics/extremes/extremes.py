@@ -433,7 +433,7 @@ def _linear(scenario: Scenario, budget: float, left_out: list[str]) -> LinearMod
     analysis = Analysis(scenario.system)
     analysis.ring.limit_work(int(budget * STEPS_PER_UNIT))
     try:
-        terms = sum(len(x) for matrix in analysis.linearisation.matrices for row in matrix.polynomials for x in row)
+        terms = sum(len(x) for matrix in analysis.autonomous.matrices for row in matrix.polynomials for x in row)
         if terms > MOST_OPERATIONS:
             left_out.append(Message("[[what]]: [[terms]] terms are too many here", what=what, terms=terms))
             return None

@@ -23,7 +23,7 @@ from mbsym.model.quantities import marked, told_units
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
-from mbsym.report.code.functions import Functions, c_definition, identifier, prescribed_value
+from mbsym.report.code.functions import Functions, c_definition, coded, courses, identifier
 from mbsym.report.code.identifiers import number, prefix_of, spelled
 from mbsym.report.code.model_code import FUNCTIONS, functions_of, programs_of, solved, undetermined
 from mbsym.report.code.named_dynamics import bodies as bodies_of
@@ -91,7 +91,7 @@ def header(analysis: Analysis, problems: Sequence[int], whole: bool = True) -> s
 
 
 def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> str:
-    system, (code, no_code) = analysis.system, programs_of(analysis)
+    system, (code, no_code) = coded(analysis.system), programs_of(analysis)
     n = len(system.coordinates)
     prefix = prefix_of(system.name)
     reserved = RESERVED | declared(prefix) | ({"u"} if system.inputs else set())
@@ -126,7 +126,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         meanings={item.name: comment(meaning) for item in system.parameters if (meaning := _told(system, item))},
         units=wrap(comment(f"Units: {', '.join(told_units(system))}."), 110) if told_units(system) else [],
         relations=[(item.name, text(item.value)) for item in system.relations],
-        prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
+        prescribed=[(name, text(course)) for name, course in courses(system).items()],
         no_code=comment(no_code),
         no_solution="" if tied else comment(known.no_forward),
         no_slopes=comment(known.no_slopes or (known.no_forward if tied else "")),

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.table import Tabulated
-from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply, names
+from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply, names, substitute
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.inputs import force_names
 from mbsym.model.quantities import marked
-from mbsym.model.system import Prescribed, System, acceleration_name
+from mbsym.model.substitution import images_of_laws
+from mbsym.model.system import Parameter, System, acceleration_name
 from mbsym.numerics.scenario import exact
 from mbsym.report.code.identifiers import number
 
@@ -36,9 +37,27 @@ class Function:
     forces: tuple[tuple[int, str], ...] = ()
 
 
-def prescribed_value(item: Prescribed) -> Expression:
-    """initial + rate*t."""
-    return moving(item.initial, item.rate)
+def courses(system: System) -> dict[str, Expression]:
+    """What is prescribed, as functions of t: initial + rate*t, and the laws of functions of time with derivatives."""
+    steady = {item.name: moving(item.initial, item.rate) for item in system.of_constant_rate}
+    return steady | {name: substitute(law, steady) for name, law in images_of_laws(system, {}).items()}
+
+
+def coded(system: System) -> System:
+    """The system as generated code takes it, with what is ``lawless`` behind its parameters."""
+    own = lawless(system)
+    return replace(system, parameters=(*system.parameters, *own)) if own else system
+
+
+def lawless(system: System) -> tuple[Parameter, ...]:
+    """Functions of time without a law and their derivatives: whoever calls generated code gives their values at t."""
+    words = ("function of time, its value at t", "its derivative", "its second derivative")
+    return tuple(
+        Parameter(name, meaning=f"{what}: {item.meaning}" if item.meaning else what)
+        for item in system.given
+        if item.law is None
+        for name, what in zip(item.names, words, strict=True)
+    )
 
 
 def moving(initial: Expression | None, rate: Expression) -> Expression:
@@ -101,13 +120,12 @@ class Functions:
         return tuple((place, self.names[name]) for place, name in enumerate(names) if name in used)
 
     def _prescribed(self, used: set[str], taken: set[str]) -> Listing:
-        """x = initial + rate*t for the prescribed quantities that occur."""
+        """The ``courses`` of what occurs."""
         program = Program()
         lower = Lowering(program, program_environment(self.system, program))
-        prescribeds = [item for item in self.system.prescribed if item.name in used]
-        values = [lower(prescribed_value(item)) for item in prescribeds]
-        listed = listing(program, values, self.names, self.dialect, self.reserved | taken)
-        named = tuple((self.names[item.name], x) for item, x in zip(prescribeds, listed.results, strict=True))
+        values = {name: lower(course) for name, course in courses(self.system).items() if name in used}
+        listed = listing(program, values.values(), self.names, self.dialect, self.reserved | taken)
+        named = tuple((self.names[name], x) for name, x in zip(values, listed.results, strict=True))
         return Listing((*listed.assignments, *named), (), listed.inputs)
 
 

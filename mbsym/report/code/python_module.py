@@ -31,11 +31,13 @@ from mbsym.problems.linearisation import Linearisation
 from mbsym.report.code.functions import (
     Function,
     Functions,
+    coded,
+    courses,
     identifier,
     initial_values,
+    lawless,
     ordered,
     parameters_of,
-    prescribed_value,
     python_definition,
     starting,
     words_of_inputs,
@@ -92,7 +94,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The module's text."""
     from mbsym.analysis import PROBLEMS
 
-    system, (code, no_code) = analysis.system, programs_of(analysis)
+    system, (code, no_code) = coded(analysis.system), programs_of(analysis)
     writer = _Module(system, bool(analysis.forms))
     tied = None
     if system.constraints:
@@ -116,6 +118,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     conserved = first_integrals(analysis, problems)
     parameters = parameters_of(system, writer)
     linear = analysis.stage(5) if 5 in problems else None
+    if linear is not None and linear.failure is None and linear.value.varying:
+        linear = None  # functions of the parameters alone
     units = told_units(system)
     matrices = gains = None
     if linear is not None and linear.failure is None:
@@ -139,7 +143,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             (name, unit) for name in ("t", *system.coordinates, *system.velocities) if (unit := unit_of(system, name))
         ],
         relations=[(item.name, text(item.value)) for item in system.relations],
-        prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
+        prescribed=[(name, text(course)) for name, course in courses(system).items()],
+        moving=[item.name for item in lawless(system)],
         no_code=plain(no_code),
         tied=tied,
         speeds=speeds,

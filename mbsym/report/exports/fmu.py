@@ -31,6 +31,7 @@ from mbsym.model.system import System
 from mbsym.model.units import ENERGY, MULTIPLES, NONE, RATE, TIME, Dimension, times
 from mbsym.numerics.scenario import exact
 from mbsym.report.code import c_source
+from mbsym.report.code.functions import coded, lawless
 from mbsym.report.code.model_code import programs_of, solved
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import Export, Language, export, told_in
@@ -140,7 +141,7 @@ def render(analysis: Analysis, problems: Sequence[int], version: int) -> bytes:
 
 def sources(analysis: Analysis, version: int) -> dict[str, bytes]:
     """The files of an FMU but for its binary, by their paths in it."""
-    system = analysis.system
+    system = coded(analysis.system)
     code, header = c_source.render(analysis, (), whole=False), c_source.header(analysis, (), whole=False)
     prefix = c_source.prefix_of(system.name)
     reserved = c_source.RESERVED | c_source.declared(prefix) | frozenset(_WORDS.split())
@@ -167,8 +168,10 @@ def sources(analysis: Analysis, version: int) -> dict[str, bytes]:
             if item.needs
         ],
         # With inputs a directional derivative would be one by these, too.
-        "slopes": solved(analysis).slopes is not None and not system.inputs,
-        "inputs": [(item.name, item.start.replace("NaN", "NAN")) for item in variables if item.causality == "input"],
+        "slopes": solved(analysis).slopes is not None and not system.inputs and not lawless(system),
+        "inputs": [(item.name, item.start.replace("NaN", "NAN")) for item in variables
+                   if item.name in system.input_names],
+        "moving": [members[item.name] for item in lawless(system)],
         "token": token,
         "tied": bool(system.constraints),
     }  # fmt: skip
@@ -199,7 +202,7 @@ def _refused() -> list[tuple[str, list[tuple[str, str]]]]:
 
 def _variables(analysis: Analysis, model: Export) -> Iterator[Variable]:
     """Time, x, x', parameters, energies, inputs: their places are their value references."""
-    system = analysis.system
+    system = coded(analysis.system)
     names_ = [*system.coordinates, *system.velocities]
     taken = {*names_, *system.parameter_names, *system.input_names}
     yield Variable(free_name("time", taken), 0, "", "independent", "continuous")
@@ -210,8 +213,11 @@ def _variables(analysis: Analysis, model: Export) -> Iterator[Variable]:
     for place, name in enumerate(names_):
         yield Variable(f"der({name})", 1 + 2 * n + place, "", "local", "continuous", "calculated", derivative=1 + place)
     first = 1 + 4 * n
+    moving = {item.name for item in lawless(system)}
     for place, item in enumerate(model.parameters):
-        if item.needs:
+        if item.name in moving:
+            yield Variable(item.name, first + place, item.meaning, "input", "continuous", start="0.0")
+        elif item.needs:
             yield Variable(item.name, first + place, item.meaning, "calculatedParameter", "fixed", "calculated")
         else:
             start = _number(numbers.get(item.name))

@@ -21,10 +21,12 @@ from mbsym.report.code.functions import (
     Function,
     Functions,
     Value,
+    coded,
+    courses,
     initial_values,
+    lawless,
     ordered,
     parameters_of,
-    prescribed_value,
     starting,
 )
 from mbsym.report.code.identifiers import camel, prefix_of
@@ -147,6 +149,11 @@ class Export:
         return ", ".join(f"{signal.name} = {text(signal.held)}" for signal in self.system.inputs)
 
     @property
+    def moving(self) -> list[str]:
+        """Which of the parameters are values of functions of time and their derivatives."""
+        return [item.name for item in lawless(self.system)]
+
+    @property
     def type_name(self) -> str:
         """As types and modules are called."""
         return camel(self.prefix)
@@ -159,7 +166,7 @@ class Export:
     @property
     def prescribed(self) -> list[tuple[str, str]]:
         """As the description writes them."""
-        return [(item.name, text(prescribed_value(item))) for item in self.system.prescribed]
+        return [(name, text(course)) for name, course in courses(self.system).items()]
 
     @property
     def units(self) -> list[str]:
@@ -196,7 +203,7 @@ def export(
 
     Raises NoClosedForm for a number beyond the range of double.
     """
-    system = analysis.system
+    system = coded(analysis.system)
     made, lacking = parts(analysis, problems, shared is None)
     further = FURTHER if system.constraints or system.reactions else frozenset()
     writer = Functions(system, language.dialect, language.reserved | further, language.propose, PI)

@@ -75,6 +75,9 @@ def content(results: Results) -> Iterator[Block]:
             q=named(linearisation.coordinates),
         )
     )
+    if linearisation.varying:
+        among = tuple(dict.fromkeys(name for entry in linearisation.varying for name in entry.among))
+        yield paragraph(say("The coefficients are functions of the time, through $[[names]]$.", names=named(among)))
     for letter, _, symmetric in _FIVE:
         matrix = getattr(linearisation, letter)
         if letter == "M" or not matrix.is_zero:

@@ -91,9 +91,15 @@ def _variables(system: System) -> Iterator[Block]:
             for k, name in enumerate(system.coordinates):
                 names += [*([", "] if k else []), Name(name), *_unit(system, name)]
         yield paragraph(Said("Generalised coordinates"), ": ", *names, ".")
-    for item in system.prescribed:
+    for item in system.of_constant_rate:
         law = Relation(Name(item.name), "=", moving(item.initial, item.rate))
         yield paragraph(Said("Prescribed"), ": ", law, *_unit(system, item.name), *_meaning(item.meaning), ".")
+    for function in system.given:
+        told = Name(function.name) if function.law is None else Relation(Name(function.name), "=", function.law)
+        yield paragraph(
+            Said("Function of time, a symbol as its derivatives are"),
+            ": ", told, *_unit(system, function.name), *_meaning(function.meaning), ".",
+        )  # fmt: skip
     if system.inputs:
         parts: list[Inline] = []
         for k, signal in enumerate(system.inputs):

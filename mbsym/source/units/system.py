@@ -460,6 +460,8 @@ class _System:
                 motion.rate, self.of(motion.name).times(Form(RATE)), Message("the rate of '[[name]]'", name=motion.name)
             )
             self.expect(motion.initial, self.of(motion.name), f"'{motion.name}'")
+        for function in system.given:
+            self.expect(function.law, self.of(function.name), f"'{function.name}'")
         for body in system.bodies:
             self.body(body)
         for load in system.loads:

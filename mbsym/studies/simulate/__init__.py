@@ -450,5 +450,5 @@ RARE = (
 STUDY = Study(
     "simulate", Command, derive, answer, refusal, unfit,
     json_help="Print JSON, that of simulation.json or ensemble.json, instead of a summary.",
-    constraints=True, held=False, out=Folder(json=True), pairs=PAIRS, rare=RARE,
+    constraints=True, held=False, free=True, out=Folder(json=True), pairs=PAIRS, rare=RARE,
 )  # fmt: skip

@@ -9,7 +9,18 @@ from msgspec import UNSET, Meta, UnsetType, field
 from mbsym.algebra.failures import Limit, Severity
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.problems import NUMBERS
-from mbsym.report.documents.base import ASIDE, BY_COORDINATE, Format, From, Part, Version, told_apart_by, version, words
+from mbsym.report.documents.base import (
+    ASIDE,
+    BY_COORDINATE,
+    Format,
+    From,
+    Part,
+    Version,
+    or_null,
+    told_apart_by,
+    version,
+    words,
+)
 from mbsym.report.documents.parts import Formula
 from mbsym.report.documents.results.claims import Claim
 from mbsym.report.documents.results.equations import Equations, Reaction
@@ -84,6 +95,16 @@ class Initial(Part, frozen=True):
 
     position: Annotated[Formula | UnsetType, "its value"] = UNSET
     velocity: Annotated[Formula | UnsetType, "its rate"] = UNSET
+
+
+class Given(Part, frozen=True):
+    """a free function of time: it and its derivatives are symbols"""
+
+    name: Annotated[str, "its name; of its derivatives name_dot and name_ddot"]
+    meaning: Annotated[str, "what it is"]
+    law: Annotated[
+        Formula | UnsetType, "what it is where numbers are wanted, if the description says so", From(by=or_null)
+    ] = UNSET
 
 
 class Input(Part, frozen=True):
@@ -306,6 +327,9 @@ class Results(Part, frozen=True, kw_only=True):
         "energies, by name; 1 for a pure number, nothing where a unit does not follow",
     ] = UNSET
     prescribed: Annotated[dict[str, Formula], "angles and lengths that are driven, with their rates"]
+    given: Annotated[
+        list[Given] | UnsetType, "free functions of time, where the description has any", told_apart_by("name")
+    ] = UNSET
     motion: Annotated[
         dict[str, Motion] | UnsetType,
         "the unperturbed motion value + rate*t, by coordinate, where the description gives one",
