@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import cached_property, partial
+from functools import partial
 from itertools import combinations, pairwise
 from typing import Any
 
@@ -69,10 +69,19 @@ class Atom:
     polynomial: Polynomial
     relation: str
 
-    @cached_property
-    def key(self) -> tuple[str, str]:
-        """The same for equal conditions.  A polynomial may have a million terms: it is written once."""
-        return str(self.polynomial), self.relation
+    def __hash__(self) -> int:
+        """Polynomials have none; they may have a million terms, and are compared quicker than written."""
+        terms = len(self.polynomial)
+        return hash((terms, self.polynomial.monomial(0) if terms else (), self.relation))
+
+    @property
+    def constant(self) -> bool:
+        return len(self.polynomial) <= 1 and bool(self.polynomial.is_constant())
+
+    @property
+    def rank(self) -> tuple[str, str]:
+        """Its place in a piece; where that is too long to be searched the order is no matter."""
+        return (str(self.polynomial) if len(self.polynomial) <= MOST_TERMS_SEARCHED else ""), self.relation
 
     def negated(self) -> Atom:
         relation, factor = _NEGATED[self.relation]
@@ -151,16 +160,16 @@ class ParameterSet:
 
 
 def _of(pieces: Iterable[Piece]) -> ParameterSet:
-    kept_pieces: dict[frozenset[tuple[str, str]], Piece] = {}
+    kept_pieces: dict[frozenset[Atom], Piece] = {}
     for piece in pieces:
-        plain: dict[tuple[str, str], Atom] = {}
+        plain: dict[Atom, None] = {}
         for condition in piece:
-            if not condition.polynomial.is_constant():
-                plain[condition.key] = condition
+            if not condition.constant:
+                plain[condition] = None
             elif not _holds(_number(condition.polynomial), condition.relation):
                 break
         else:
-            kept_pieces.setdefault(frozenset(plain), tuple(plain.values()))
+            kept_pieces.setdefault(frozenset(plain), tuple(plain))
         if len(kept_pieces) > MOST_PIECES:
             raise TooLargeError("a set of parameters in too many pieces", limit=Limit.WORK)
     return ParameterSet(tuple(kept_pieces.values()))
@@ -192,11 +201,9 @@ def _holds(value: Any, relation: str) -> bool:
 
 def _decided(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
     """Each piece is decided once for the same knowledge, whatever the order of its conditions."""
-    named = {condition.key: condition for condition in piece}
-    key = tuple(sorted(named))
-    known = signs.emptiness
+    known, key = signs.emptiness, frozenset(piece)
     if key not in known:
-        known[key] = _decide(tuple(named[name] for name in key), signs)
+        known[key] = _decide(tuple(sorted(dict.fromkeys(piece), key=lambda condition: condition.rank)), signs)
     return known[key]
 
 
@@ -302,16 +309,15 @@ class _Search:
         self.branches -= 1
         if self.branches < 0:
             raise _OutOfBudget
-        kept_atoms: dict[tuple[str, str], Atom] = {}
+        kept_atoms: dict[Atom, None] = {}
         for condition in atoms:
-            if condition.polynomial.is_constant():
-                if not _holds(_number(condition.polynomial), condition.relation):
-                    return None
-            else:
-                kept_atoms[condition.key] = condition
+            if not condition.constant:
+                kept_atoms[condition] = None
+            elif not _holds(_number(condition.polynomial), condition.relation):
+                return None
         point: dict[int, Any] = {}
         open_ones = False
-        for part in sorted(_components(list(kept_atoms.values())), key=lambda part: len(_variables(part))):
+        for part in sorted(_components(list(kept_atoms)), key=lambda part: len(_variables(part))):
             try:
                 there = self._component(part)
             except _OutOfBudget:

@@ -441,7 +441,9 @@ class Signs:
         """Signs of the terms; terms that differ in numbers alone are one: 4 a - pi a has the sign of a."""
         used = self._numbers_in(p)
         if not used:
-            yield from (self._term(*term) for term in p.terms())
+            # Of many terms a few tell that the sign is open.
+            terms = p.terms() if len(p) <= LONG else ((p.monomial(k), p.coefficient(k)) for k in range(len(p)))
+            yield from (self._term(*term) for term in terms)
             return
         groups: dict[tuple[int, ...], list[tuple[tuple[int, ...], Any]]] = {}
         for exponents, coefficient in p.terms():
@@ -758,7 +760,7 @@ def _at(p: Polynomial, generator: int, value: Any) -> Polynomial:
 
 def _normal(factor: Polynomial) -> tuple[Polynomial, int]:
     """The factor or its negative, whichever has more positive terms (then: a positive leading one), and the sign."""
-    balance = sum(_sign(c) for c in factor.coeffs()) or _sign(factor.leading_coefficient())
+    balance = 2 * sum(map(fmpq(0).__lt__, factor.coeffs())) - len(factor) or _sign(factor.leading_coefficient())
     return (factor, 1) if balance > 0 else (-factor, -1)
 
 

@@ -143,9 +143,10 @@ def _demand_regular(analysis: Analysis) -> None:
 def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     judgement = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
-    if judgement.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and Judge(analysis).may_add(judgement.verdict):
+    judge = Judge(analysis)
+    if judgement.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and judge.may_add(judgement.verdict):
         verdict = higher.of_one_coordinate(analysis, judgement.verdict)
-        judgement = stability.with_verdict(judgement, Judge(analysis).for_all(verdict))
+        judgement = stability.with_verdict(judgement, judge.for_all(verdict))
         if (
             judgement.verdict.word.open
             and not judgement.verdict.because(Because.ORDER_DECIDES)
@@ -158,8 +159,7 @@ def _judged(analysis: Analysis) -> Stability:
         return replace(judgement, numerical=undecided(Because.POLE, divisor), spectra=())
     if judgement.numerical is None or values is None:
         return judgement
-    judge, judged = Judge(analysis), judgement.numerical
-    general = judgement.verdict
+    judged, general = judgement.numerical, judgement.verdict
     weaker = general.because(Because.FEWER_CONSTRAINTS)  # than what rests near by may say
     if judged.word.open and higher.decided(general.word) and judge.may_add(judged) and not weaker:
         judged = general  # for all values, and so for these

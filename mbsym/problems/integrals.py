@@ -36,6 +36,7 @@ Example:
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -135,7 +136,7 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
         scene, equations, conserved, [item.formula.polynomial for item in first_integrals if item not in energies]
     )
     momenta = [item.formula.polynomial for item in first_integrals if item not in energies]
-    first_integrals += _axial_momenta(scene, equations, momenta)
+    first_integrals += _axial_momenta(scene, equations, programs, momenta)
     if not all(load.conservative for load in scene.system.loads):
         known = [item.formula.polynomial for item in first_integrals if item not in energies]
         first_integrals += _momenta_with_a_share(scene, equations, conserved, known, idle)
@@ -290,16 +291,27 @@ def _constant_momenta(system: System, ring: Ring, programs: Programs) -> set[tup
 
     Rates of momentum are known as numbers, in inertial axes, so that no formula is formed for nothing.
     """
+    for state in _states_in_motion(system, ring, programs):
+        try:
+            forces, moments = Oracle(system, state).momentum_rates[INERTIAL]
+        except NOT_THERE:
+            continue
+        rates = {("linear momentum", i + 1): x for i, x in enumerate(forces)}
+        rates |= {("angular momentum", i + 1): x for i, x in enumerate(moments)}
+        return {key for key, x in rates.items() if _may_vanish(x)}
+    return set()
+
+
+def _states_in_motion(system: System, ring: Ring, programs: Programs) -> Iterator[State]:
+    """Random states with the accelerations there: rational ones, then those of balls."""
     for states in (rational_states(system, ring, STATES), ball_states(system, ring, STATES)):
         for state in states:
-            try:
-                forces, moments = Oracle(system, accelerated(system, state, programs)).momentum_rates[INERTIAL]
-            except NOT_THERE:
-                continue
-            rates = {("linear momentum", i + 1): x for i, x in enumerate(forces)}
-            rates |= {("angular momentum", i + 1): x for i, x in enumerate(moments)}
-            return {key for key, x in rates.items() if (x.contains(0) if isinstance(x, arb) else x == 0)}
-    return set()
+            with suppress(*NOT_THERE):
+                yield accelerated(system, state, programs)
+
+
+def _may_vanish(x: Any) -> bool:
+    return bool(x.contains(0) if isinstance(x, arb) else x == 0)
 
 
 def _momenta(
@@ -324,10 +336,14 @@ def _momenta(
     return momenta
 
 
-def _axial_momenta(scene: Scene, equations: Equations, known: Sequence[Polynomial]) -> list[Integral]:
-    """Those that are proved, and no combinations of others."""
+def _axial_momenta(
+    scene: Scene, equations: Equations, programs: Programs, known: Sequence[Polynomial]
+) -> list[Integral]:
+    """Those that are proved, and no combinations of others; none is proved whose rate differs from zero at a state."""
     ring = scene.ring
     found: list[Integral] = []
+    state = next(_states_in_motion(scene.system, ring, programs), None)
+    carry = None if state is None else Carrier(ring, state.numbers, state.values)
     carrying = {body.attached_to for body in scene.system.bodies}
     try:
         for name, motion in scene.motions.items():
@@ -345,6 +361,7 @@ def _axial_momenta(scene: Scene, equations: Equations, known: Sequence[Polynomia
                 others = [*known, *(item.formula.polynomial for item in found)]
                 if (
                     varies(scene, momentum)
+                    and _may_be_conserved(scene, momentum, carry)
                     and _is_new(ring, momentum, others)
                     and is_proved(scene, equations, momentum)
                 ):
@@ -354,6 +371,14 @@ def _axial_momenta(scene: Scene, equations: Equations, known: Sequence[Polynomia
     except Failure:
         pass  # what was found so far is right; the rest is not known
     return found
+
+
+def _may_be_conserved(scene: Scene, x: Polynomial, carry: Carrier | None) -> bool:
+    """Whether dx/dt is zero, or has no value, at the state in motion that ``carry`` puts in."""
+    try:
+        return carry is None or _may_vanish(carry(total_rate(scene, x)))
+    except NOT_THERE:
+        return True
 
 
 def _momenta_with_a_share(
@@ -442,7 +467,9 @@ def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bo
 def is_independent(ring: Ring, x: Polynomial, others: Sequence[Polynomial]) -> bool:
     """Whether x is no combination of 1 and the others with coefficients like a, cos(a), pi, or none that is found."""
     try:
-        return not others or not any(len(others) + 1 in c for c in kernel(ring, [ring.one, *others, x]))
+        if not others or x in others:
+            return not others
+        return not any(len(others) + 1 in c for c in kernel(ring, [ring.one, *others, x]))
     except Failure:
         return True
 

@@ -102,8 +102,7 @@ class _Disturbed:
         self.pushes = [number(source.randint(1, 9)) for _ in system.inputs]
         self.state = State(numbers, values)
         self.direction: Mapping[str, Any] = parts
-        self._follow(values, parts)
-        self.rows = self._rows()
+        self.rows = self._follow(values, parts)
         moving, speeds = self._places(about.dependent_speeds), [row.velocity.a for row in self.rows]
         missing, rest = _eliminated(self.rows, moving, speeds)
         #: What the velocities of the motion leave of each constraint: by how much a dependent one is wrong, and the
@@ -113,8 +112,11 @@ class _Disturbed:
         ]
         self.left_over += [(self.rows[k].name.label, x) for k, x in rest]
 
-    def _follow(self, values: dict[str, Scalar], parts: dict[str, list[Any]]) -> None:
-        """The dependent parts, from the rows, one order of derivatives after another."""
+    def _follow(self, values: dict[str, Scalar], parts: dict[str, list[Any]]) -> tuple[Row, ...]:
+        """The dependent parts, from the rows, one order of derivatives after another.
+
+        The rows that it returns have all but accelerations of the disturbance.
+        """
         about, zero = self.about, self.state.numbers.zero
         at, moving = self._places(about.dependent_coordinates), self._places(about.dependent_speeds)
         rows = [row for row in self._rows() if row.position is not None]
@@ -124,19 +126,19 @@ class _Disturbed:
             places = [self._along(row, parts) for row in rows]
         for i, x in _eliminated(rows, at, places)[0].items():
             parts[self.system.coordinates[i]][0] = -x
-        rows = list(self._rows())
-        for i, x in _eliminated(rows, moving, [row.velocity.b for row in rows])[0].items():
+        every = self._rows()
+        for i, x in _eliminated(every, moving, [row.velocity.b for row in every])[0].items():
             parts[self.system.coordinates[i]][1] = -x
-        rows = list(self._rows())
-        unmoved = _eliminated(rows, moving, [row.acceleration.a for row in rows])[0]
+        unmoved = _eliminated(every, moving, [row.acceleration.a for row in every])[0]
         with_motion = {entry.coordinate for entry in self.system.motion}
         for i, x in unmoved.items():
             if self.system.coordinates[i] not in with_motion:
                 key = acceleration_name(self.system.coordinates[i])
                 values[key] = values.get(key, zero) - x
-        rows = list(self._rows())
-        for i, x in _eliminated(rows, moving, [row.acceleration.b for row in rows])[0].items():
+        every = self._rows()
+        for i, x in _eliminated(every, moving, [row.acceleration.b for row in every])[0].items():
             parts[self.system.coordinates[i]][2] = -x
+        return every
 
     def _along(self, row: Row, parts: Mapping[str, Sequence[Any]]) -> Any:
         """J x of the row, x the disturbance of the coordinates."""

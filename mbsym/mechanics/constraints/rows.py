@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.ring import Ring
@@ -159,8 +160,13 @@ def _moved_by(scene: Scene, constraint: Constraint) -> set[str]:
 
 
 def said_rows(scene: Scene) -> tuple[Row, ...]:
-    """The rows over the ring without those that say 0 = 0 whatever the motion."""
-    return tuple(row for row in constraint_rows(scene) if not row.is_trivial(scene.algebra))
+    """The rows over the ring without those that say 0 = 0 whatever the motion; found once in a scene."""
+    if scene not in _SAID:
+        _SAID[scene] = tuple(row for row in constraint_rows(scene) if not row.is_trivial(scene.algebra))
+    return _SAID[scene]
+
+
+_SAID: WeakKeyDictionary[Scene, tuple[Row, ...]] = WeakKeyDictionary()
 
 
 def joined_rows(ring: Ring, rows: Sequence[Row]) -> tuple[Row, ...]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 from mbsym.report.latex.formulas import NARROW, width
@@ -99,7 +100,8 @@ def _environment(kind: str, body: str, label: str) -> str:
     return f"\\begin{{{kind}}}{named}\n{body}\n\\end{{{kind}}}"
 
 
-def _lines(formula: str) -> list[str] | None:
+@lru_cache(maxsize=2)  # whoever learns that there are several asks again for them
+def _lines(formula: str) -> tuple[str, ...] | None:
     """The lines that it takes in a narrow column, broken where TeX may break it; None where some would be too wide."""
     parts, penalties = _parts(formula)
     rows: list[str] = []
@@ -109,13 +111,13 @@ def _lines(formula: str) -> list[str] | None:
         else:
             rows.append(line)
     whole = all(_width(row) <= LINE and row.count("\\left") == row.count("\\right") for row in rows)
-    return rows if rows and whole else None
+    return tuple(rows) if rows and whole else None
 
 
 def _parts(formula: str) -> tuple[list[str], list[int]]:
     """What stands between the places where TeX may break it, and the penalties of these."""
     parts, penalties, place, depth = [], [], 0, 0
-    for match in re.finditer(r"\\[{}]|[{}]|\\penalty(\d+) ", formula):
+    for match in _BREAK.finditer(formula):
         if match[0] in "{}":
             depth += 1 if match[0] == "{" else -1
         elif depth == 0 and match[1] is not None:
@@ -123,6 +125,9 @@ def _parts(formula: str) -> tuple[list[str], list[int]]:
             penalties.append(int(match[1]))
             place = match.end()
     return [*parts, _plain(formula[place:])], penalties
+
+
+_BREAK = re.compile(r"\\[{}]|[{}]|\\penalty(\d+) ")
 
 
 def _equalities(formula: str) -> list[str] | None:
@@ -155,10 +160,11 @@ def _broken(parts: Sequence[str], penalties: Sequence[int]) -> list[str]:
 
 def _plain(formula: str) -> str:
     """Without the places where TeX may break it."""
-    bare = re.sub(r"\\penalty\d+ ?|\\allowbreak ?", " ", formula)
-    return re.sub(r"(?<=[^\\]) {2,}", " ", bare).strip()
+    return _SPACES.sub(" ", _BREAKS.sub(" ", formula)).strip()
 
 
+_BREAKS = re.compile(r"\\penalty\d+ ?|\\allowbreak ?")
+_SPACES = re.compile(r"(?<=[^\\]) {2,}")
 _FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{[^{}]*\})*)\}\{((?:[^{}]|\{[^{}]*\})*)\}")
 
 
@@ -166,8 +172,11 @@ def _width(formula: str) -> float:
     """In ems, roughly: letters as for matrices, and signs and brackets besides."""
     while (fraction := _FRACTION.search(formula)) is not None:  # as wide as the wider of its two parts
         formula = formula[: fraction.start()] + max(fraction[1], fraction[2], key=width) + formula[fraction.end() :]
-    signs = len(re.findall(r"[=<>]|\\(?:geq|leq|neq|colon|quad)\b", formula))
-    return width(formula) + 1.3 * signs + 0.4 * len(re.findall(r"[(),\[\]]", formula))
+    brackets = sum(map(formula.count, "(),[]"))
+    return width(formula) + 1.3 * len(_SIGN.findall(formula)) + 0.4 * brackets
+
+
+_SIGN = re.compile(r"[=<>]|\\(?:geq|leq|neq|colon|quad)\b")
 
 
 def display(formula: str, label: str = "") -> str:
@@ -226,20 +235,16 @@ def long_formulas(text: str) -> Iterator[tuple[int, str, str, int]]:
 
 def closing_brace(text: str, start: int) -> int:
     """Where the brace that opens at ``start`` closes.  Raises ValueError where it does not."""
-    depth, place = 0, start
-    while place < len(text):
-        match text[place]:
-            case "\\":
-                place += 1
-            case "{":
-                depth += 1
-            case "}":
-                depth -= 1
-                if depth == 0:
-                    return place
-        place += 1
+    depth = 0
+    for match in _BRACE.finditer(text, start):
+        if match[0] in "{}":
+            depth += 1 if match[0] == "{" else -1
+            if depth == 0:
+                return match.start()
     raise ValueError("a brace is never closed")
 
+
+_BRACE = re.compile(r"\\.|[{}]", re.DOTALL)
 
 #: Where a narrow column may break a formula if nothing better is left: at signs in short brackets, between factors.
 _PLACES = re.compile(r"\\[{}]|[{}]|(?<=[^ ]) (?=[+-] )|(?<=[^ ]) (?=\\(?:sin|cos|exp|ln)\b|\\[bB]igl|\()")

@@ -27,15 +27,19 @@ def formula(value: Formula) -> str:
 
 def is_readable(value: Formula) -> bool:
     """Whether anybody would read the polynomial."""
-    return value.terms <= LONGEST and len(re.findall(r" [+-] ", formula(value))) < LONGEST_CONDITION
+    return value.terms <= LONGEST and len(_SIGN.findall(formula(value))) < LONGEST_CONDITION
 
 
 def width(latex: str) -> float:
     """A rough estimate in ems."""
-    letters = re.sub(r"\\(frac|left|right|bigl|bigr|Bigl|Bigr|dot|ddot|mathrm|mathit|penalty\d+)", "", latex)
-    functions = len(re.findall(r"\\(sin|cos|exp|ln)", letters))
-    symbols = re.sub(r"\\[A-Za-z]+|[^\W_]", "x", letters)
-    return 0.55 * symbols.count("x") + functions + 1.3 * len(re.findall(r" [+-] ", symbols))
+    letters = _WITHOUT_WIDTH.sub("", latex)
+    functions = len(_FUNCTION.findall(letters))
+    symbols = _SYMBOL.sub("x", letters)
+    return 0.55 * symbols.count("x") + functions + 1.3 * len(_SIGN.findall(symbols))
+
+
+_WITHOUT_WIDTH = re.compile(r"\\(frac|left|right|bigl|bigr|Bigl|Bigr|dot|ddot|mathrm|mathit|penalty\d+)")
+_FUNCTION, _SYMBOL, _SIGN = (re.compile(x) for x in (r"\\(sin|cos|exp|ln)", r"\\[A-Za-z]+|[^\W_]", r" [+-] "))
 
 
 def measured_matrix(value: Matrix) -> tuple[str, float]:
