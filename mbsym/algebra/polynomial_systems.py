@@ -175,6 +175,7 @@ class _Solver:
         self.pending = [_Branch(equations, [f for x in nonzero for f in _irreducible(x)])]
         self.points: list[AlgebraicPoint] = []
         self.families: list[Family] = []
+        self.unseen: list[tuple[list[Polynomial], tuple[int, ...]]] = []
         self.unfinished: list[str] = []
         self.work, self.pairs, self.branches = 0, 0, 0
 
@@ -190,6 +191,8 @@ class _Solver:
             except _TooLarge as reason:
                 if branch.special or not self._specialised(branch):
                     self.unfinished.append(message_of(reason))
+        for closure, free in self.unseen:
+            self._seen_at_points(closure, free)
         # Branches do not share solutions, but a point may still be the limit of a family of another branch.
         isolated = [p for p in self.points if not any(family.contains(p) for family in self.families)]
         return Solutions(tuple(isolated), tuple(self.families), tuple(dict.fromkeys(self.unfinished)))
@@ -383,12 +386,7 @@ class _Solver:
         exceptional, closure = self._exceptional(basis, free, branch)
         families = branch.families
         if sample is None:
-            self.unfinished.append(
-                Message(
-                    "a set of solutions of complex dimension [[count]] in which no regular real point was found",
-                    count=len(free),
-                )
-            )
+            self.unseen.append((closure, free))
         else:
             family = Family(tuple(closure), len(free), free, sample)
             if not any(known.contains(sample) and known.dimension >= len(free) for known in families):
@@ -448,9 +446,20 @@ class _Solver:
             part = _Solver([*basis, *fixed], branch.nonzero, self.bounded, Limits(branches=200, work=2_000_000))
             part.families = []
             for point in part.run().points:
-                if _rank(basis, point, self.nvars) == self.nvars - len(free):
+                if len(_free_at(basis, point, free)) == len(free):
                     return point
         return None
+
+    def _seen_at_points(self, closure: list[Polynomial], free: tuple[int, ...]) -> None:
+        """The family of a set in which no real point was met by chance, where an exceptional point is a regular one."""
+        for point in self.points:
+            if all(point.residue(x) == 0 for x in closure):
+                there = _free_at(closure, point, free)
+                if len(there) == len(free):
+                    self.families.append(Family(tuple(closure), len(free), there, point))
+                    return
+        text = "a set of solutions of complex dimension [[count]] in which no regular real point was found"
+        self.unfinished.append(Message(text, count=len(free)))
 
 
 # --- monomials and polynomials ---------------------------------------------------------------------------------------
@@ -636,10 +645,15 @@ def _independent(leads: Sequence[Monomial], nvars: int) -> tuple[int, ...]:
     return ()
 
 
-def _rank(equations: Sequence[Polynomial], point: AlgebraicPoint, nvars: int) -> int:
-    """The rank of the Jacobian at an algebraic point, by elimination in the number field: exact."""
-    rows = [[point.residue(x.derivative(k)) for k in range(nvars)] for x in equations]
-    return len(echelon(Residues(point.modulus), rows, nvars)[1])
+def _free_at(equations: Sequence[Polynomial], point: AlgebraicPoint, free: tuple[int, ...]) -> tuple[int, ...]:
+    """The variables that the others are functions of near a regular point, as many as its Jacobian leaves: ``free``
+
+    where that is possible.  By elimination in the number field: exact.
+    """
+    columns = [k for k in range(len(point.values)) if k not in free] + list(free)
+    rows = [[point.residue(x.derivative(k)) for k in columns] for x in equations]
+    pivots = echelon(Residues(point.modulus), rows, len(columns))[1]
+    return tuple(sorted(k for at, k in enumerate(columns) if at not in pivots))
 
 
 class Residues(Algebra[Univariate]):

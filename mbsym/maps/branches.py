@@ -32,7 +32,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, curves, joined
-from mbsym.maps.branches_events import decided_throughout, is_undamped, named, stability_changes
+from mbsym.maps.branches_events import decided_throughout, is_bounded, is_undamped, named, stability_changes
 from mbsym.maps.branches_result import Branches, Critical, Doubt, Meeting, Piece, Remark
 from mbsym.maps.mapping import Watch, ends, float_of, lengths, unwatched
 from mbsym.maps.result import Cell, Counted, Lack, Of, Shape
@@ -132,9 +132,9 @@ def branches(
             if there.balance is False:
                 remarks.append(Remark(Doubt.MISMATCH, short(critical.sample)))
         solved = not (changing.unfinished or changing.throughout)
-        undamped = all(is_undamped(part.search) for part in parts)
+        along = [all(known(part.search) for part in parts) for known in (is_undamped, is_bounded)]
         pieces = [
-            replace(piece, throughout=decided_throughout(regions[piece.interval], piece.number, solved, undamped))
+            replace(piece, throughout=decided_throughout(regions[piece.interval], piece.number, solved, *along))
             for piece in linked(parts, made())
         ]
         return made(pieces, interrupted=False)

@@ -28,7 +28,7 @@ from flint import fmpq_poly
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import characteristic_polynomial, discriminant, hurwitz_minors
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, echelon, null_space
 from mbsym.algebra.polynomial_systems import Residues
 from mbsym.algebra.ring import Polynomial
@@ -37,6 +37,8 @@ from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, joined
 from mbsym.maps.result import Cell
 from mbsym.problems.relative_equilibria.equilibria import _ChartSearch
 from mbsym.problems.relative_equilibria.verdict import LinearAtRest
+from mbsym.problems.stability.enclosed import blocks
+from mbsym.problems.stability.words import LAGRANGE, ROUTH
 
 Element = Any  # a flint.fmpq_poly: an element of a number field
 
@@ -239,6 +241,8 @@ MOST_TERMS = 4000
 
 #: Theorems that use no more than the signs of M, D and K.
 BY_INERTIA = frozenset({"Lagrange-Dirichlet", "Lagrange-Dirichlet, Routh", "Kelvin-Chetaev"})
+#: Theorems that need an energy which does not grow.
+BY_ENERGY = frozenset({LAGRANGE, ROUTH})
 
 
 def stability_changes(curve: Curve) -> CurvePoints:
@@ -258,8 +262,8 @@ def stability_changes(curve: Curve) -> CurvePoints:
     changes = []
     for x in conditions:
         try:
-            points = curve.where_on_components([x])
-            changes.append(curve.where([x]) if points.unfinished else points)
+            points = curve.where_on_components([x]) if curve.search.equations else None
+            changes.append(curve.where([x]) if points is None or points.unfinished else points)
         except Failure as reason:
             changes.append(CurvePoints((), (), False, (str(reason),)))
     return joined(changes)
@@ -268,27 +272,30 @@ def stability_changes(curve: Curve) -> CurvePoints:
 def _conditions(curve: Curve, linear: LinearAtRest) -> list[Polynomial] | None:
     """Polynomials in q and the parameter; None where they are too large."""
     ring = curve.ring
-    mass, damping, gyroscopic, stiffness, circulatory = (
-        ScalarMatrix(ring, [list(row) for row in rows]) for rows in linear.matrices
-    )
-    if len(mass.rows) > MOST_COORDINATES:
-        return None
     if _unforced(linear):
         return []
-    raw = characteristic_polynomial(mass.rows, (damping + gyroscopic).rows, (stiffness + circulatory).rows)
-    p = [ring.fraction(ring.reduce(x))[0] for x in raw] if _polynomial(curve, raw) else None
-    if p is None:
-        return None
-    while p and p[0].is_zero():
-        p = p[1:]
-    if len(p) < 3:
-        return []
     conditions: list[Polynomial] = []
-    if any(not x.is_zero() for x in p[1::2]):
-        conditions.append(hurwitz_minors(p)[len(p) - 3])
-    elif len(p) > 3:
-        conditions.append(discriminant(p[::2]))
+    for indices in blocks(*linear.matrices):
+        mass, damping, gyroscopic, stiffness, circulatory = (
+            ScalarMatrix(ring, [[rows[i][j] for j in indices] for i in indices]) for rows in linear.matrices
+        )
+        if len(indices) > MOST_COORDINATES:
+            return None
+        raw = characteristic_polynomial(mass.rows, (damping + gyroscopic).rows, (stiffness + circulatory).rows)
+        p = [ring.fraction(ring.reduce(x))[0] for x in raw] if _polynomial(curve, raw) else None
+        if p is None:
+            return None
+        if p[0].is_zero():  # of displacements that nothing resists: what is left is not singular with det df/dq
+            while p[0].is_zero():
+                p = p[1:]
+            conditions.append(p[0])
+        if any(not x.is_zero() for x in p[1::2]):
+            conditions += hurwitz_minors(p)[len(p) - 3 : len(p) - 2] if len(p) > 2 else []
+        elif len(p) > 3:
+            conditions.append(discriminant(p[::2]))
     conditions = [ring.reduce(x) for x in conditions]
+    if any(x.is_zero() for x in conditions):
+        raise NoClosedForm("roots are imaginary, or double, along a whole branch")
     return None if any(len(x) > MOST_TERMS for x in conditions) else [x for x in conditions if not x.is_constant()]
 
 
@@ -302,18 +309,25 @@ def _polynomial(curve: Curve, coefficients: object) -> bool:
     return all(not curve.ring.fraction(x)[1] for x in coefficients)  # type: ignore[attr-defined]
 
 
-def decided_throughout(interval: Cell, number: int, solved: bool, undamped: bool) -> bool:
+def decided_throughout(interval: Cell, number: int, solved: bool, undamped: bool, bounded: bool) -> bool:
     """Whether the verdict at the sample is proved for the whole interval.
 
     ``solved``: all changes of stability are solved; ``undamped``: D = 0 everywhere, so that the inertia of K decides
-    what Lagrange, Dirichlet, Kelvin and Chetaev's theorems say.
+    what Lagrange, Dirichlet, Kelvin and Chetaev's theorems say; ``bounded``: the energy grows for no value of the
+    parameter, by forces of higher order neither.
     """
     if interval.counted is None or interval.certainty is not Certainty.PROVED:
         return False
     verdict = interval.counted.equilibria[number].verdict
-    if verdict.word.open:
+    if verdict.word.open or not (bounded or BY_ENERGY.isdisjoint(verdict.theorems)):
         return False
     return solved or (undamped and verdict.theorem in BY_INERTIA)
+
+
+def is_bounded(search: _ChartSearch) -> bool:
+    """Whether the energy grows for no value of the parameter."""
+    linear = search._linear
+    return not isinstance(linear, str) and linear.law.bounded
 
 
 def is_undamped(search: _ChartSearch) -> bool:

@@ -16,14 +16,17 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import (
     ZERO,
+    Call,
     Expression,
     names,
     number,
     substitute,
+    walk,
 )
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
+from mbsym.model.loads import ForceFunction
 from mbsym.model.substitution import held, put
 from mbsym.model.system import InitialValue, System, acceleration_name, rational, velocity_name
 
@@ -202,6 +205,10 @@ def rest(system: System) -> Rest:
         environment[acceleration_name(name)] = ring.zero
     scene = Scene(system, ring, environment, ring)
     equations = residuals(scene)
+    for load in (x for x in system.loads if isinstance(x, ForceFunction)):
+        for node in walk(load.expression):
+            if isinstance(node, Call) and node.function == "log":  # its derivative does not know where it is real
+                scene.lower(node)
     rates = {ring.index("velocity", name): ring.zero for name in system.coordinates}
     turning = []
     for entry in system.motion:

@@ -131,6 +131,30 @@ def test_circulatory_forces_make_flutter_without_a_bifurcation(tmp_path: Path) -
     assert not any(x.word.open for x in map(there.verdict, there.pieces))
 
 
+@pytest.mark.parametrize(
+    ("f", "g", "happens", "counted"),
+    [
+        # the imaginary roots of x are those of y only where its damper changes sign
+        ("-x", "-y - y**3 - p*y_dot", [(0.0, ())], [(1, 0), (1, 1)]),
+        # s^2 (s^2 + 1 + p) at y = 0: unstable below p = -1, where no equilibrium is singular
+        ("-y_dot", "x_dot - p*y - y**3", [(-1.0, ()), (0.0, (Event.PITCHFORK,))], [(3, 2), (3, 3), (1, 1)]),
+        # nothing resists x but the damper
+        ("-p*x_dot", "-y", [(0.0, ())], [(1, 0), (1, 1)]),
+    ],
+)
+def test_changes_of_stability_where_no_equilibrium_is_singular(
+    f: str, g: str, happens: list[Any], counted: list[tuple[int, int]], tmp_path: Path
+) -> None:
+    there = found(ball(tmp_path, f, g), "p", "-3", "1")
+    assert (told(there), counts(there)) == (happens, counted)
+
+
+def test_friction_of_higher_order_that_may_drive_proves_nothing_along_a_branch(tmp_path: Path) -> None:
+    """x'' = -x - p x'^3: stable for p >= 0, unstable for p < 0."""
+    there = found(ball(tmp_path, "-x - p*x_dot**3"), "p", "-1", "2")
+    assert not any(piece.throughout for piece in there.pieces)
+
+
 def test_a_double_root_over_the_whole_interval_is_no_proof(tmp_path: Path) -> None:
     there = found(ball(tmp_path, "x**2*(x - p)"), "p", "-1", "1")
     assert not there.proved

@@ -116,6 +116,14 @@ def test_a_point_beside_a_family() -> None:
     assert [family.dimension for family in found.families] == [2]
 
 
+def test_a_narrow_ring_is_a_family_and_not_the_points_at_which_it_crosses_axes() -> None:
+    """cos(a) cos(b) = 20/21: neither cosine can be 3/5; four of its points have a = 0, pi or b = 0, pi."""
+    found = solved("s c u d", ["s**2 + c**2 - 1", "u**2 + d**2 - 1", "21*c*d - 20"])
+    assert (places(found), found.unfinished) == ([], ())
+    (family,) = found.families
+    assert family.dimension == len(family.free) == 1
+
+
 def test_a_family_without_real_points_is_not_claimed() -> None:
     found = solved("x y z", ["x**2 + y**4 + z**2 + x*y + 3"])
     assert not found.families

@@ -243,3 +243,13 @@ def test_the_circles_of_the_bicycle() -> None:
         run = mbsym.simulate(path, time=1.0, values=state)
         for name in ("roll", "steer"):
             assert np.ptp(run.coordinates[system.coordinates.index(name)]) < 1e-6
+
+
+def test_a_spin_about_a_level_axis_is_no_steady_motion_of_a_sphere_in_a_dish() -> None:
+    """Friction carries the sphere beside the lowest place, r n x m g e_z != 0, but J omega would be constant there.
+
+    The axis of gamma is level where beta = pi/2, and there angles are singular.
+    """
+    found = listed(shipped("dish-sphere"))
+    assert column(found, "x") == column(found, "y") == [0.0] * 8
+    assert {abs(x.value) for each in found.singular for x in each.values if x.name == "beta"} == {math.pi / 2}

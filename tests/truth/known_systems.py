@@ -91,6 +91,9 @@ LINE = [
     one("friction to the right only", SPRING + rayleigh("x*x_dot**2/2"), "open, critical", lambda t, x, v: -x - x * v),
     Known("free", "mbsym: 1\nname: free\nbodies:\n  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, "
         "coordinates: [x]}\nmotion: {x: 0}\n", "drifts", motion=solved(lambda t, x, v: 0 * x)),
+    # V' = 8 x + 1 - 1/(1 + x) vanishes at x = -9/8, too, where V is not real
+    one("beside the wall of a logarithm", potential("4*x**2 + x - log(1 + x)"), "stable",
+        lambda t, x, v: 1 / (1 + x) - 1 - 8 * x, rests=[[0.0]]),
     one("driven", SPRING + force("sin(t)"), "time-dependent", lambda t, x, v: -x + np.sin(t)),
     one("weak spring in time", potential("(2 + cos(t))*x**2/2"), "time-dependent",
         lambda t, x, v: -(2 + np.cos(t)) * x),

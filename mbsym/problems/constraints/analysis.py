@@ -190,8 +190,12 @@ class _Analysis:
         """Rows that are independent on the motion, where as many are as elsewhere: it may be where others are not."""
         for place in places(self.scene):
             with suppress(*NOT_THERE, Failure):
+                one = points.at([0])
+                held = [self.ring.substitute(row.position, place) for row in self.rows if row.position is not None]
+                if any(map(is_certain, one.values(held)[0])):  # where equilibria are looked for it is no position
+                    continue
                 flat = [self.ring.substitute(x, place) for row in self.rows for x in row.partials]
-                there = points.at([0]).values(flat)[0]
+                there = one.values(flat)[0]
                 ranked = self._ranked([there[i : i + self.n] for i in range(0, len(there), self.n)])
                 if ranked.rank == rank:
                     return ranked

@@ -426,7 +426,10 @@ class LinearOnOrbit:
                 row[c.place] -= ring.evaluate(c.along.get(i, ring.zero), balls)
         z_u, z_z = (_matrix(moves, n) * x for x in (Y, W))
         T = Y.transpose()
-        inverse = (T * M * Y).inv()
+        try:
+            inverse = (T * M * Y).inv()
+        except ZeroDivisionError:
+            return undecided(Because.MASS_SINGULAR)
         u_u, u_z = (-(inverse * (T * x)) for x in (B * Y + M * W * z_u, B * W + C + M * W * z_z))
         first = _matrix([*_beside(z_z, z_u), *_beside(u_z, u_u)], z + u)
         coefficients = [arb(x) for x in first.charpoly().coeffs()]

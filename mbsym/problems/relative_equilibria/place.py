@@ -259,12 +259,14 @@ class Unknowns:
         return replace(point, values=tuple(values))
 
     def roots_agree(self, point: AlgebraicPoint) -> bool:
-        """Whether every square root is not negative."""
+        """Whether every square root is not negative, and every logarithm real."""
         for i, k in enumerate(self.indices):
             is_root = self.ring.generators[k].kind == "root" and point.values[i] != 0
             if is_root and point.enclosure(point.values[i], PRECISION) < 0:
                 return False
-        return True
+        logarithms = (g.argument for g in self.ring.generators if g.kind == "function" and g.name == "log")
+        real = (point.residue(self.polynomial(x)) for x in logarithms if x is not None and self.holds(x))
+        return not any(point.enclosure(x, PRECISION) < 0 for x in real)
 
     def text(self, x: Any) -> str:
         """A polynomial as a reader writes it."""

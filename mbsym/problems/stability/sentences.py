@@ -79,7 +79,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "Without the cyclic coordinates $K > 0$, and $D \\geq 0$: the energy does not grow, and the (changed) "
         "potential energy has a strict minimum in the others."
     ),
-    Because.UNDAMPED_MOTION: "Motions of [[1]] stay undamped.",
+    Because.UNDAMPED_MOTION: "In first approximation motions of [[1]] stay undamped.",
     Because.INTEGRALS: _integrals,
     Because.LINEAR_BOUNDED: (
         "The equations of motion are exactly linear: no root has a positive real part, and those on the imaginary axis "

@@ -46,7 +46,7 @@ def test_a_damped_node_leaves_a_mode_undamped() -> None:
     at_node = system(K=CHAIN, D=[[0, 0, 0], [0, 1, 0], [0, 0, 0]])
     found = verdict_at(at_node, {}).verdict
     assert (found.word, found.theorem) == (Word.STABLE, "Lagrange-Dirichlet")
-    assert found.explanation.endswith("Motions of x, z stay undamped.")
+    assert found.explanation.endswith("In first approximation motions of x, z stay undamped.")
     assert words(at_node) == ("STABLE", "STABLE")
     beside = system(K=CHAIN, D=[[1, 0, 0], [0, 0, 0], [0, 0, 0]])
     assert words(beside) == ("ASYMPTOTIC", "ASYMPTOTIC")
