@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 
 import properties  # noqa: F401  (before the command line asks for one of its profiles)
 import pytest
+from click.testing import CliRunner, Result
 from durations import (  # noqa: F401
     pytest_addoption,
     pytest_collection_modifyitems,
@@ -40,6 +41,8 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 from mbsym.numerics.kernels.llvm import Library
 from mbsym.report import whole_run
+from mbsym.source import load, read
+from mbsym_cli.main import main
 
 T = TypeVar("T")
 
@@ -63,6 +66,31 @@ OWN = TESTS / "systems"
 
 #: Those that move: not given by their matrices.
 WITH_BODIES = [path for path in sorted(SHIPPED.glob("*.yaml")) if "\nbodies:" in path.read_text(encoding="utf-8")]
+
+
+def system_of(source: str | Path, filename: str = "<string>") -> System:
+    """The system of a description, a text or a file, that is read without a mistake."""
+    system, complaints = read(source, filename) if isinstance(source, str) else load(source)[:2]
+    assert system is not None, [one.message for one in complaints]
+    return system
+
+
+def analysed(source: str | Path, problems: Iterable[int] | None = None) -> Analysis:
+    """The analysis of a description that is read without a mistake; further complaints are not looked for."""
+    return Analysis(system_of(source), problems)
+
+
+def filed(path: Path, text: str) -> Path:
+    """The path, where now a file holds the text."""
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def invoked(*words: object, code: int | None = None, **how: Any) -> Result:
+    """What ``mbsym`` with these words does in this process, where no error is left uncaught; it ends with ``code``."""
+    done = CliRunner().invoke(main, list(map(str, words)), catch_exceptions=False, **how)
+    assert code in (None, done.exit_code), done.output
+    return done
 
 
 def reference(name: str) -> Any:

@@ -9,26 +9,22 @@ from pathlib import Path
 
 import pytest
 import sympy
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 
 from mbsym import load, loads
 from mbsym.problems.stability.verdict import undecided
 from mbsym.problems.stability.words import Because, Word
 from mbsym.report.sections.summary import _part
 from mbsym.report.targets import TARGETS
-from mbsym_cli.main import main
 
 PENDULUM = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
 
 
 def told(tmp_path: Path, text: str, *words: str) -> list[str]:
     """The lines below the title, each whole."""
-    file = tmp_path / "system.yaml"
-    file.write_text(text, encoding="utf-8")
+    file = filed(tmp_path / "system.yaml", text)
     command = ["run", str(file), "--format", "json", "--out", str(tmp_path / "out"), *words]
-    done = CliRunner().invoke(main, command, env={"COLUMNS": "1000"})
-    assert done.exit_code == 0, done.output
+    done = invoked(*command, env={"COLUMNS": "1000"}, code=0)
     _, *lines = done.stdout.splitlines()
     return [re.sub(" {2,}", "  ", line.strip()) for line in lines]
 
@@ -93,14 +89,14 @@ def test_under_constraints_equations_have_multipliers_and_the_constraints_beside
     (line,) = [x for x in told(tmp_path, (SHIPPED / "four-bar.yaml").read_text(encoding="utf-8")) if "longest" in x]
     assert re.fullmatch(r"Equations  3, the longest with \d+ terms \(mbsym show \S+/system.yaml equations\)", line)
     command = line.partition("(mbsym ")[2].removesuffix(")").split()
-    assert len(CliRunner().invoke(main, command).stdout.splitlines()) > 3
+    assert len(invoked(*command).stdout.splitlines()) > 3
 
 
 def test_a_system_given_by_its_matrices_has_equations_and_inputs_have_names(tmp_path: Path) -> None:
     """M q'' + (D + G) q' + (K + N) q = B u of G = [[0, g], [-g, 0]], K = diag(-k1, -k2)."""
     lines = told(tmp_path, (SHIPPED / "gyroscopic-pair.yaml").read_text(encoding="utf-8"))
     assert lines[1:3] == ["Equations  x'' + g y' - k1 x = 0", "y'' - g x' - k2 y = 0"]
-    shown = CliRunner().invoke(main, ["show", str(SHIPPED / "gyroscopic-pair.yaml"), "equations"])
+    shown = invoked("show", SHIPPED / "gyroscopic-pair.yaml", "equations")
     assert shown.stdout.splitlines() == ["x'' + g y' - k1 x = 0", "y'' - g x' - k2 y = 0"]
     (line,) = [x for x in told(tmp_path, (SHIPPED / "cart-pole.yaml").read_text(encoding="utf-8")) if "inputs:" in x]
     assert line == "Coordinates  2: p, theta; L does not contain p; inputs: F"
@@ -183,7 +179,7 @@ def test_a_quotient_before_a_product_is_not_read_as_a_divisor(tmp_path: Path) ->
     assert any("y = v t/r" in line for line in lines)
     file = SHIPPED / "cart-pendulum.yaml"
     command = ["run", str(file), "-v", "--problems", "3", "--format", "json", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, command, env={"COLUMNS": "80"})
+    done = invoked(*command, env={"COLUMNS": "80"})
     drawn = [line for line in done.stdout.splitlines() if line.endswith(" ]")]
     entries = [line for line in done.stdout.splitlines() if "M[1" in line]
     assert drawn or entries
@@ -278,7 +274,7 @@ def test_a_name_in_a_denominator_has_no_brackets(tmp_path: Path) -> None:
 
 def test_at_eighty_columns_text_hangs_beside_its_name_and_short_conditions_are_whole(tmp_path: Path) -> None:
     command = ["run", str(SHIPPED / "satellite.yaml"), "--format", "json", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, command, env={"COLUMNS": "80"})
+    done = invoked(*command, env={"COLUMNS": "80"})
     first, *lines = done.stdout.splitlines()
     assert first.startswith("Satellite with a gravitational stabilizer")
     assert not [line for line in lines if len(line) > 80 and str(tmp_path) not in line]
@@ -362,8 +358,7 @@ def test_set_replaces_a_value(tmp_path: Path) -> None:
 )
 def test_a_value_that_cannot_be_is_refused(tmp_path: Path, command: str, setting: str, code: str) -> None:
     out = ["--out", str(tmp_path / "out")] if command == "run" else []
-    done = CliRunner().invoke(main, [command, str(SHIPPED / "bead-on-hoop.yaml"), "-s", setting, *out])
-    assert done.exit_code == 2
+    done = invoked(command, SHIPPED / "bead-on-hoop.yaml", "-s", setting, *out, code=2)
     assert f"--set: error[{code}]" in done.output
     assert not (tmp_path / "out").exists()
 
@@ -422,15 +417,15 @@ def test_the_letters_of_conditions_are_explained_beside_them(tmp_path: Path) -> 
 
 def test_what_dependent_rows_presume_stands_at_the_verdict(tmp_path: Path) -> None:
     """x = 0 and x + e z = 0 hold z where e != 0: then U = -y^2/2 alone is felt; else z'' = z grows."""
-    path = tmp_path / "a.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "a.yaml",
         "mbsym: 1\nname: rows\nparameters: {e: {value: 0, sign: real}}\n"
         "bodies: [{name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}]\n"
         "loads: [{potential: y**2/2 - z**2/2}]\n"
-        "constraints:\n  - relation: x = 0\n  - relation: x + e*z = 0\nmotion: {}\n"
+        "constraints:\n  - relation: x = 0\n  - relation: x + e*z = 0\nmotion: {}\n",
     )
     asked = ["run", str(path), "-p", "5,6", "-v", "--format", "json", "--out", str(tmp_path / "out")]
-    told = " ".join(CliRunner().invoke(main, asked).output.split())
+    told = " ".join(invoked(*asked).output.split())
     assert "Stability where e != 0: stable (Lagrange-Dirichlet)" in told
     assert "Verdict, where e != 0: stable (Lagrange-Dirichlet)" in told
 

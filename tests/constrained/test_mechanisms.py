@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import system_of
 from scipy.integrate import solve_ivp
 
 from mbsym.numerics.conservation import Standing
@@ -19,7 +20,6 @@ from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, simulate
 from mbsym.simulation.accurate import simulate_accurately
-from mbsym.source import load, read
 
 TESTS = Path(__file__).parents[1]
 
@@ -29,14 +29,12 @@ def reference(name: str) -> Any:
 
 
 def shipped(name: str) -> Scenario:
-    system, complaints, _ = load(TESTS / "systems" / f"{name}.yaml")
-    assert system is not None, list(complaints)
+    system = system_of(TESTS / "systems" / f"{name}.yaml")
     return scenario(system)
 
 
 def described(text: str) -> Scenario:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     return scenario(system)
 
 

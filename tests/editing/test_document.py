@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
+from conftest import system_of
 from mutants import mutant
 
 import mbsym
@@ -419,8 +420,7 @@ def test_the_satellite_is_built_from_an_empty_text(name: str) -> None:
         else:
             operations.append(put([key], _flow(data[key])))
     text = done(text, *operations, name=name)
-    built, complaints = read(text, name)
-    assert built is not None, [one.message for one in complaints]
+    built = system_of(text, name)
     assert to_text(built) == to_text(system)
     assert built == system
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, filed
 
 import mbsym
 from mbsym.numerics.accuracy import Lacking, NoEstimate
@@ -42,8 +42,7 @@ initial: {x: {position: 1, velocity: 0.3}, y: {position: 0.2, velocity: -0.4}}
 
 
 def particle(load: str, folder: Path, time: float = 5.0, **values: object) -> Simulation:
-    path = folder / "particle.yaml"
-    path.write_text(PARTICLE.replace("LOAD", load), encoding="utf-8")
+    path = filed(folder / "particle.yaml", PARTICLE.replace("LOAD", load))
     return mbsym.simulate(path, time, values=values, invariants=True)  # type: ignore[arg-type]
 
 
@@ -250,8 +249,7 @@ def test_a_damper_on_a_coordinate_that_rests_takes_nothing(
     start: str, wanted: Standing, whole: bool, tmp_path: Path
 ) -> None:
     """x = cos t and y = 0: T - U = 1/2 for ever.  Displaced by whatever little, y loses its energy to the damper."""
-    path = tmp_path / "particle.yaml"
-    path.write_text(RESTING.replace("START", start), encoding="utf-8")
+    path = filed(tmp_path / "particle.yaml", RESTING.replace("START", start))
     assert mbsym.simulate(path, 5, whole=whole).conservation.standing is wanted
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
@@ -21,7 +21,6 @@ from mbsym.numerics.trade.comparison import compared
 from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
 from mbsym.numerics.trade.tradeoff import FIRST, tradeoff
 from mbsym.numerics.trade.trial import trial_of
-from mbsym_cli.main import main
 
 OSCILLATOR = """
 mbsym: 1
@@ -101,10 +100,8 @@ def test_a_way_to_a_reference_that_fails_as_nobody_foresaw_is_no_end_of_the_stud
     with pytest.raises(Breakdown) as told:
         whole_reference(dynamics_of(OSCILLATOR), 5.0, 10.0)
     assert told.value.kind == BROKEN
-    path = tmp_path / "oscillator.yaml"
-    path.write_text(OSCILLATOR)
-    found = CliRunner().invoke(main, ["tradeoff", str(path), "--time", "5", "--out", str(tmp_path)])
-    assert found.exit_code == 3
+    path = filed(tmp_path / "oscillator.yaml", OSCILLATOR)
+    found = invoked("tradeoff", path, "--time", "5", "--out", tmp_path, code=3)
     assert "internal error" in found.output
     assert "planted" in found.output
     assert "Traceback" not in found.output

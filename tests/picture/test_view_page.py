@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 import windows
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.picture import as_json, picture
 from mbsym.report.viewer.page import viewed
-from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 DRAWN = [x for x in sorted(SYSTEMS.glob("*.yaml")) if x.stem not in ("gyroscopic-pair", "triangular-points")]
@@ -35,8 +35,8 @@ initial: {a: 1}
 """
 
 
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(main, ["view", *map(str, arguments)])
+def run(*arguments: object, code: int | None = None) -> Result:
+    return invoked("view", *arguments, code=code)
 
 
 class Elements(HTMLParser):
@@ -90,9 +90,17 @@ def test_the_page_asks_the_network_for_nothing() -> None:
 def test_the_command_writes_a_page_and_tells_of_it(tmp_path: Path) -> None:
     out = tmp_path / "page.html"
     done = run(
-        SYSTEMS / "simple-pendulum.yaml", "--time", 1, "--modes", "--equilibria", "--set", "theta=1/4", "-o", out
+        SYSTEMS / "simple-pendulum.yaml",
+        "--time",
+        1,
+        "--modes",
+        "--equilibria",
+        "--set",
+        "theta=1/4",
+        "-o",
+        out,
+        code=0,
     )
-    assert done.exit_code == 0, done.output
     data = json.loads(Elements(out.read_text(encoding="utf-8")).inside[1])
     assert data["picture"]["coordinates"][0]["value"] == 0.25
     assert data["motion"]["coordinates"]["theta"][0] == 0.25
@@ -105,10 +113,8 @@ def test_the_command_writes_a_page_and_tells_of_it(tmp_path: Path) -> None:
 def test_what_is_told_of_a_page_is_in_the_language_of_the_description(tmp_path: Path) -> None:
     """A skate: by motions it comes to every position, so that none is said to be out of reach."""
     text = (SYSTEMS / "chaplygin-sleigh.yaml").read_text(encoding="utf-8")
-    file = tmp_path / "sledge.yaml"
-    file.write_text(text.replace("mbsym: 1\n", "mbsym: 1\nlanguage: ru\n"), encoding="utf-8")
-    done = run(file, "--equilibria", "-o", tmp_path / "page.html")
-    assert done.exit_code == 0, done.output
+    file = filed(tmp_path / "sledge.yaml", text.replace("mbsym: 1\n", "mbsym: 1\nlanguage: ru\n"))
+    done = run(file, "--equilibria", "-o", tmp_path / "page.html", code=0)
     assert "достижимо оно движением или нет" in done.output
     lines = [line for line in done.output.split("\n") if not line.startswith(text.split("name: ")[1].split("\n")[0])]
     assert not re.search("[a-z]{4}", re.sub(r"\S*(html|yaml)", "", "\n".join(lines))), done.output
@@ -123,8 +129,7 @@ def test_what_cannot_be_had_is_told_on_the_page(name: str, what: str, why: str, 
     out, file = tmp_path / "page.html", tmp_path / f"{name}.yaml"
     text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
     file.write_text(text.replace("constraints:\n", "constraints:\n  - relation: y = x**2\n"), encoding="utf-8")
-    done = run(file if what == "equilibria" else SYSTEMS / f"{name}.yaml", f"--{what}", "-o", out)
-    assert done.exit_code == 0
+    done = run(file if what == "equilibria" else SYSTEMS / f"{name}.yaml", f"--{what}", "-o", out, code=0)
     assert f"no {what}: " in done.output
     data = json.loads(Elements(out.read_text(encoding="utf-8")).inside[1])
     assert why in data[what]["why"]
@@ -156,11 +161,9 @@ def test_missing_values_are_stood_in_for_unless_a_motion_is_asked_for(tmp_path: 
     whole = (SYSTEMS / "simple-pendulum.yaml").read_text(encoding="utf-8")
     description.write_text(whole.replace("l: 0.5, ", ""), encoding="utf-8")
     out = tmp_path / "page.html"
-    done = run(description, "-o", out)
-    assert done.exit_code == 0
+    done = run(description, "-o", out, code=0)
     assert "Stand-ins for values that are not given, only to draw: l = 1." in done.output
-    done = run(description, "--time", 1, "-o", tmp_path / "other.html")
-    assert done.exit_code == 2
+    done = run(description, "--time", 1, "-o", tmp_path / "other.html", code=2)
     assert not (tmp_path / "other.html").exists()
 
 
@@ -174,15 +177,13 @@ def test_missing_values_are_stood_in_for_unless_a_motion_is_asked_for(tmp_path: 
     ],
 )
 def test_wrong_options(options: tuple[str, ...], complaint: str, tmp_path: Path) -> None:
-    done = run(SYSTEMS / "simple-pendulum.yaml", *options, "-o", tmp_path / "page.html")
-    assert done.exit_code == 2, done.output
+    done = run(SYSTEMS / "simple-pendulum.yaml", *options, "-o", tmp_path / "page.html", code=2)
     assert complaint in done.output
     assert not (tmp_path / "page.html").exists()
 
 
 def test_systems_of_matrices_have_no_picture(tmp_path: Path) -> None:
-    done = run(SYSTEMS / "gyroscopic-pair.yaml", "-o", tmp_path / "page.html")
-    assert done.exit_code == 2
+    done = run(SYSTEMS / "gyroscopic-pair.yaml", "-o", tmp_path / "page.html", code=2)
     assert "given by its matrices" in done.output
 
 
@@ -359,8 +360,7 @@ def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> Non
 
 
 def test_markup_stays_text_in_a_browser(show: Callable[[Path], Window], tmp_path: Path) -> None:
-    out = tmp_path / "page.html"
-    out.write_text(viewed(mbsym.loads(HOSTILE).system, {}, 1.0, modes=True)[0], encoding="utf-8")
+    out = filed(tmp_path / "page.html", viewed(mbsym.loads(HOSTILE).system, {}, 1.0, modes=True)[0])
     window = show(out)
     assert not window.complaints
     assert window.page.locator("img, iframe, svg:not(.viewer-axes), b").count() == 0

@@ -14,7 +14,7 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from scipy.integrate import solve_ivp
 from terminal import told
 
@@ -28,7 +28,6 @@ from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import averages, contradicts
 from mbsym.simulation.expanded import Measured
 from mbsym.simulation.expanded import average_measured as measured
-from mbsym_cli.main import main
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 
@@ -360,8 +359,7 @@ def test_an_order_that_is_assumed_wrongly_is_withdrawn_on_every_surface(monkeypa
     assert not {"potential", "vibrational", "averaged_motion_at_values"} & set(one)
     out = tmp_path / "averaged.yaml"
     for options in ([], ["--quiet"]):
-        done = CliRunner().invoke(main, ["average", str(path), "--out", str(out), *options])
-        assert done.exit_code == 1
+        done = invoked("average", path, "--out", out, *options, code=1)
         assert "withdrawn" in done.output
         assert "effective potential" not in done.output
         assert not out.exists()
@@ -383,8 +381,7 @@ def test_the_scaling_stands_beside_the_result_on_every_surface(tmp_path):
     (one,) = json.loads(texts["json"])["small_parameters"]["averaged"]
     assert (one["potential"], one["orders"]) == ("v**2*x**2/(4*nu**2)", {"nu": -1, "v": -1})
     out = tmp_path / "averaged.yaml"
-    done = CliRunner().invoke(main, ["average", str(path), "--out", str(out)])
-    assert done.exit_code == 0, done.output
+    done = invoked("average", path, "--out", out, code=0)
     assert "Taken as of the order of the power -1 of epsilon: v." in done.output
     assert "nu of order eps^-1, v of order eps^-1, all else of order 1" in out.read_text()
     assert _value(mbsym.load(out).linearisation.K[0, 0], v=100, nu=40) == pytest.approx(100**2 / (2 * 40**2))
@@ -392,11 +389,9 @@ def test_the_scaling_stands_beside_the_result_on_every_surface(tmp_path):
 
 def test_the_command_takes_orders():
     path = str(CASES / "avgmean.yaml")
-    done = CliRunner().invoke(main, ["average", path, "--order", "u=0", "--time", "1"])
-    assert done.exit_code == 0, done.output
+    done = invoked("average", path, "--order", "u=0", "--time", "1", code=0)
     assert "Effective potential: u x^2/4." in done.output
-    refused = CliRunner().invoke(main, ["average", path, "--order", "q=1", "--order", "u", "--order", "u=x"])
-    assert refused.exit_code == 2
+    refused = invoked("average", path, "--order", "q=1", "--order", "u", "--order", "u=x", code=2)
     assert refused.output.count("--order: error[") == 3, refused.output
 
 
@@ -432,8 +427,7 @@ def test_forces_beside_an_effective_potential_are_told(tmp_path, held, potential
     found = averaging_of(one, "phi")
     assert str(found.potential) == potential
     assert found.beside == beside
-    path = tmp_path / "dipole.yaml"
-    path.write_text(text)
-    told = [CliRunner().invoke(main, ["average", str(path)]).output]
+    path = filed(tmp_path / "dipole.yaml", text)
+    told = [invoked("average", path).output]
     told += [x for name, x in _texts(one.system).items() if name in ("latex en", "html en", "terminal")]
     assert ["eside it act the forces on" in " ".join(x.split()) for x in told] == [bool(beside)] * 4

@@ -8,8 +8,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED, at_values, compiled_latex, needs_pdflatex
+from click.testing import Result
+from conftest import SHIPPED, at_values, compiled_latex, invoked, needs_pdflatex
 
 import mbsym
 from mbsym.algebra import ring
@@ -17,7 +17,6 @@ from mbsym.analysis import Analysis
 from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.latex.report import render as latex
 from mbsym.report.results_json import results
-from mbsym_cli.main import main
 
 #: A physical pendulum: T = (J + m l^2) theta'^2 / 2, U = m g l cos theta, m l^2 + J = Io.
 PENDULUM = """
@@ -249,8 +248,8 @@ def test_the_printed_formulas_of_the_satellite_hold() -> None:
 # --- reports and the command line ---
 
 
-def run(*words: object) -> Result:
-    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
+def run(*words: object, code: int | None = None) -> Result:
+    return invoked(*words, code=code)
 
 
 def test_a_refuted_claim_is_a_finding_unless_claims_are_strict(tmp_path: Path) -> None:
@@ -273,8 +272,7 @@ def test_a_refuted_claim_is_a_finding_unless_claims_are_strict(tmp_path: Path) -
 
 
 def test_explain_lists_the_kinds_of_claim() -> None:
-    done = run("explain", "claims")
-    assert done.exit_code == 0
+    done = run("explain", "claims", code=0)
     assert "first integral" in done.stdout
     assert "difference = claimed - derived" in done.stdout
 

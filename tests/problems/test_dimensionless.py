@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked, system_of
 from jsonschema import Draft202012Validator
 
 import mbsym
@@ -20,10 +20,8 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.model.scaling import Scaling
 from mbsym.model.system import System
 from mbsym.report.schemas import schema
-from mbsym.source import read
 from mbsym.source.scaling import read_scaling
 from mbsym.studies.groups import in_scale
-from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 
@@ -45,8 +43,7 @@ def scaling(system: System, text: str) -> Scaling:
 
 
 def shown(*arguments: str) -> str:
-    done = CliRunner().invoke(main, ["show", *arguments])
-    assert done.exit_code == 0, done.output
+    done = invoked("show", *arguments, code=0)
     return done.output
 
 
@@ -161,8 +158,7 @@ motion: {r: REST}
 
 @pytest.mark.parametrize("text", [LITERAL, MOTION.replace("REST", "1/2")])
 def test_a_number_with_a_dimension_has_no_place_among_dimensionless_ones(text: str) -> None:
-    system, _ = read(text)
-    assert system is not None
+    system = system_of(text)
     if text is not LITERAL:
         with pytest.raises(NoDescription, match="numbers that have a dimension"):
             in_variables(system, scaling(system, "r=l*x,t=tau/w,k=m*w**2,c=m*w*d"))
@@ -181,8 +177,7 @@ def test_what_nothing_measures_is_named() -> None:
 
 def test_signs_go_over_to_what_is_put_in() -> None:
     """d = c/(m w) has the sign of c; where the sign of a name does not follow it is assumed of the expression."""
-    system, _ = read(MOTION.replace("REST", "l"))
-    assert system is not None
+    system = system_of(MOTION.replace("REST", "l"))
     found = in_scale(system, scaling(system, "r=l*x,t=tau/w,k=m*w**2,c=m*w*d"))
     assert [(one.name, one.sign) for one in found.parameters] == [("d", "nonnegative")]
     assert found.assumptions == ()
@@ -218,28 +213,26 @@ def test_what_is_wrong_is_said_at_its_place(text: str, code: str, place: int, wo
 
 def test_groups_propose_a_scaling_that_converts(tmp_path: Path) -> None:
     path = str(SYSTEMS / "double-pendulum.yaml")
-    told = CliRunner().invoke(main, ["groups", path], env={"COLUMNS": "70"}).output
+    told = invoked("groups", path, env={"COLUMNS": "70"}).output
     (line,) = (one for one in told.splitlines() if "--scale" in one)  # in one line, as it is pasted
     proposal = line.partition('--scale "')[2].partition('"')[0]
     assert proposal == "t=tau/sqrt(g/l1),m2=m1*m2_hat,l2=l1*l2_hat"
     out = tmp_path / "scaled.yaml"
-    done = CliRunner().invoke(main, ["convert", path, "--scale", proposal, "--out", str(out)])
-    assert done.exit_code == 0, done.output
-    system, complaints = read(out.read_text())
-    assert system is not None, complaints.items
+    invoked("convert", path, "--scale", proposal, "--out", out, code=0)
+    system = system_of(out.read_text())
     assert set(system.parameter_names) == {"m2_hat", "l2_hat"}
 
 
 def test_a_run_in_dimensionless_variables_tells_its_units_and_names_no_physical_time(tmp_path: Path) -> None:
     """x'' + x = 0 in t omega: its roots are +- i, whatever omega is in seconds."""
-    path = tmp_path / "a.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "a.yaml",
         "mbsym: 1\nname: mass\nparameters: {m: {sign: positive, value: 2}, k: {sign: positive, value: 8}}\n"
         "bodies: [{name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}]\n"
-        "loads: [{spring: {coordinate: x, stiffness: k}}]\nmotion: {x: 0}\n"
+        "loads: [{spring: {coordinate: x, stiffness: k}}]\nmotion: {x: 0}\n",
     )
     asked = ["run", str(path), "--scale", "t=s/w,k=m*w**2", "-p", "5,6", "-v", "--format", "json"]
-    told = CliRunner().invoke(main, [*asked, "--out", str(tmp_path / "out")]).output
+    told = invoked(*asked, "--out", tmp_path / "out").output
     assert "mass, in units in which w = 1, m = 1" in told
     assert "Eigenvalues there, in the time t, of x: +- 1 i" in " ".join(told.split())
     assert "physical" not in told
@@ -254,8 +247,7 @@ def test_groups_as_json_have_no_dimension() -> None:
             sum((Fraction(x) * dimensions[name][axis] for name, x in powers.items()), Fraction(0)) for axis in range(3)
         ]
 
-    done = CliRunner().invoke(main, ["groups", str(SYSTEMS / "spring-pendulum.yaml"), "--json"])
-    assert done.exit_code == 0, done.output
+    done = invoked("groups", SYSTEMS / "spring-pendulum.yaml", "--json", code=0)
     found = json.loads(done.stdout)
     assert list(Draft202012Validator(schema("groups")).iter_errors(found)) == []
     assert len(found["groups"]) == 1

@@ -7,20 +7,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import system_of
 
 import mbsym
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import Value, given_values
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
 from mbsym.problems.stability.words import Word
-from mbsym.source import read
 
 SYSTEMS = Path(__file__).parent.parent.parent / "systems"
 
 
 def listed(text: str, **values: Value) -> Equilibria:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     return relative_equilibria(system, given_values(system, values))
 
 

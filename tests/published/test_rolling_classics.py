@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import analysed
 from flint import arb
 
 import mbsym
@@ -18,7 +19,6 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.stability.words import Because, Word
-from mbsym.source import read
 from tests.published.test_constrained_systems import AtState
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
@@ -34,9 +34,7 @@ def changed(name: str, *changes: tuple[str, str]) -> Analysis:
     for old, new in changes:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
-    return Analysis(system)
+    return analysed(text)
 
 
 def parameters(analysis: Analysis) -> dict[str, Polynomial]:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, compiled_latex, needs_pdflatex, precision
+from conftest import SHIPPED, compiled_latex, filed, needs_pdflatex, precision
 from flint import arb, fmpq
 from terminal import told
 
@@ -84,8 +84,7 @@ def in_latex(value: Math) -> str:
 
 
 def loaded(text: str, folder: Path):
-    path = folder / "model.py"
-    path.write_text(text, encoding="utf-8")
+    path = filed(folder / "model.py", text)
     spec = importlib.util.spec_from_file_location("model_under_test", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

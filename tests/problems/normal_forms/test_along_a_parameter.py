@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from conftest import filed
 from flint import arb
 from jsonschema import Draft202012Validator
 
@@ -174,8 +175,7 @@ def test_without_a_parameter_to_vary_the_values_decide(tmp_path: Path) -> None:
 def test_without_numbers_formulas_are_told_or_the_command_that_gives_them(tmp_path: Path) -> None:
     runner = CliRunner()
     text = (SYSTEMS / "three-bodies.yaml").read_text(encoding="utf-8")
-    file = tmp_path / "three.yaml"
-    file.write_text("".join(x for x in text.splitlines(True) if not x.startswith("values:")), encoding="utf-8")
+    file = filed(tmp_path / "three.yaml", "".join(x for x in text.splitlines(True) if not x.startswith("values:")))
     done = runner.invoke(main, ["nonlinear", str(file)])
     assert done.exit_code == 0
     assert "D4 = " in done.output

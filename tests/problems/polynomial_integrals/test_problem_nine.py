@@ -11,7 +11,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.analysis import polynomial
@@ -21,7 +21,6 @@ from mbsym.problems.polynomial_integrals import linear_relations
 from mbsym.report.plain_writer import Writer
 from mbsym.report.schemas import schema
 from mbsym.report.words import integrals_words
-from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 KOVALEVSKAYA = (SYSTEMS / "kovalevskaya.yaml").read_text(encoding="utf-8")
@@ -88,14 +87,12 @@ def test_what_problem_seven_goes_on_with_falls_with_the_check(monkeypatch):
 
 
 def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
-    path = tmp_path / "chaplygin.yaml"
-    path.write_text(CHAPLYGIN, encoding="utf-8")
+    path = filed(tmp_path / "chaplygin.yaml", CHAPLYGIN)
     result = mbsym.load(path).polynomial_integrals
     assert result.integrals.new == ()
     assert [(one.level.weight, [w for w, _ in one.integrals]) for one in result.levels] == [(3, [3])]
     words = ["run", path, "-v", "--problems", "9", "--format", "json,latex,wolfram,html", "--language", "es"]
-    done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path / "out")])
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, "--out", tmp_path / "out", code=0)
     assert "Peso 3, donde la de peso 3 (" in " ".join(done.output.split())
     data = json.loads((tmp_path / "out" / "results.json").read_text("utf-8"))
     jsonschema.validate(data, schema("results"))
@@ -168,8 +165,7 @@ def test_hess_relation_of_the_shipped_file():
 def test_a_symmetry_with_gamma_gives_the_energy_that_problem_7_finds(tmp_path):
     """A cart that is pushed by a constant F: t -> t + s changes L by d(F x)/dt, so that the energy less F x is kept."""
     words = ["run", SYSTEMS / "cart-pendulum.yaml", "--problems", "7,9", "--format", "json"]
-    done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+    invoked(*words, "--out", tmp_path, code=0)
     symmetries = json.loads((tmp_path / "results.json").read_text("utf-8"))["polynomial_integrals"]["symmetries"]
     assert [(one["field"], one["gauge"], one["new"]) for one in symmetries["symmetries"]] == [({}, "F*x", False)]
 
@@ -190,8 +186,7 @@ def test_symmetries_are_in_the_reports(tmp_path):
     """L of x and 2 y is that of an isotropic oscillator: no change when they turn, (x, y) moving as (-4 y, x)."""
     (tmp_path / "ellipses.yaml").write_text(ELLIPSES, encoding="utf-8")
     words = ["run", tmp_path / "ellipses.yaml", "--problems", "7,9", "--format", "json,latex,html,python"]
-    done = CliRunner().invoke(main, [*map(str, words), "--language", "ru", "--out", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+    invoked(*words, "--language", "ru", "--out", tmp_path, code=0)
     data = json.loads((tmp_path / "results.json").read_text("utf-8"))
     jsonschema.validate(data, schema("results"))
     symmetries = data["polynomial_integrals"]["symmetries"]
