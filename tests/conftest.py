@@ -63,6 +63,8 @@ MOST_SHARED = 100
 
 SHIPPED = TESTS.parent / "systems"
 OWN = TESTS / "systems"
+#: Descriptions about which something false was once said.
+STATEMENTS = TESTS / "cases" / "statements"
 
 #: Those that move: not given by their matrices.
 WITH_BODIES = [path for path in sorted(SHIPPED.glob("*.yaml")) if "\nbodies:" in path.read_text(encoding="utf-8")]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import sympy
-from conftest import SHIPPED, filed, invoked
+from conftest import SHIPPED, STATEMENTS, filed, invoked
 
 from mbsym import load, loads
 from mbsym.problems.stability.verdict import undecided
@@ -140,7 +140,7 @@ def test_what_equations_in_singular_angles_do_not_say_of_the_motion_is_told_with
 
     With rotation axes 3, 1, 3 two angles turn about one line there, and the equations by themselves leave only y = 0.
     """
-    lines = told(tmp_path, (CASES / "staude2.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "staude2.yaml").read_text(encoding="utf-8"))
     assert "Motion  psi = W t, th = phi = 0 satisfies the equations of motion if and only if y = 0, x = 0" in lines
     assert any(x.startswith("Stability  provided the conditions of the motion (problem 4) hold: ") for x in lines)
 
@@ -201,9 +201,6 @@ def test_each_group_of_coordinates_has_its_cases_in_order(tmp_path: Path) -> Non
     assert "otherwise unstable (Lyapunov's first method) if A - B < 0" in lines
 
 
-CASES = Path(__file__).parents[1] / "cases" / "statements"
-
-
 def test_no_case_of_stability_stands_beside_a_verdict_of_instability(tmp_path: Path) -> None:
     """K = [[2 a, -1, b - a], [-1, b - 2, 1/2 - b - a], [b - a, 1/2 - b - a, b + 2]] is nowhere positive definite.
 
@@ -214,7 +211,7 @@ def test_no_case_of_stability_stands_beside_a_verdict_of_instability(tmp_path: P
         d = 0.5 - b - a
         minor = 2 * a * (b * b - 4 - d * d) - (b + 2) - 2 * d * (b - a) - (b - 2) * (b - a) ** 2
         assert 2 * a * (b - 2) <= 1 or minor < 0
-    lines = told(tmp_path, (CASES / "complete-dissipation.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "complete-dissipation.yaml").read_text(encoding="utf-8"))
     at = next(k for k, line in enumerate(lines) if line.startswith("Stability"))
     assert lines[at] == "Stability  unstable but for border cases (Kelvin-Chetaev)"
     assert lines[at + 1].startswith("Self-check")
@@ -238,7 +235,7 @@ def test_what_is_decided_case_by_case_is_not_called_undecided() -> None:
 
 def test_conditions_have_no_needless_minus_and_none_that_another_implies(tmp_path: Path) -> None:
     """van der Pol at rest: x'' - mu x' + x = 0 about x = 0.  (N - W^2) (B - C) > 0 says that N is not W^2."""
-    lines = told(tmp_path, (CASES / "van_der_pol_at_rest.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "van_der_pol_at_rest.yaml").read_text(encoding="utf-8"))
     assert "asymptotically stable (Lyapunov's first method) if mu < 0" in lines
     assert "otherwise unstable (Lyapunov's first method) if mu > 0" in lines
     lines = told(tmp_path, (SHIPPED / "clebsch.yaml").read_text(encoding="utf-8"))
@@ -252,13 +249,13 @@ def test_only_does_not_belong_to_if(tmp_path: Path) -> None:
     """
     lines = told(tmp_path, (SHIPPED / "ziegler.yaml").read_text(encoding="utf-8"))
     assert any(line.startswith("stable in first approximation only, if 7 k - 2 l P > 0, ") for line in lines)
-    lines = told(tmp_path, (CASES / "lift.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "lift.yaml").read_text(encoding="utf-8"))
     assert "stable (Lagrange-Dirichlet) if g + a > 0" in lines
 
 
 def test_a_condition_that_varies_has_to_hold_all_the_time(tmp_path: Path) -> None:
     """The rod's weight turns the wheels by m g e cos(p)/10, and p = v t/r: there is no such motion but with v = 0."""
-    text = (CASES.parent / "constraints" / "coupling-rod.yaml").read_text(encoding="utf-8")
+    text = (STATEMENTS.parent / "constraints" / "coupling-rod.yaml").read_text(encoding="utf-8")
     (line,) = [x for x in told(tmp_path, text, "--problems", "1-4") if x.startswith("Motion")]
     assert line.endswith(" satisfies the equations of motion if and only if, at all times, cos(p) = 0")
     text = (SHIPPED / "orbital-gyrostat.yaml").read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import Result
-from conftest import filed, invoked, system_of
+from conftest import SHIPPED, filed, invoked, system_of
 
 from mbsym.analysis import Analysis
 from mbsym.source import read
@@ -20,8 +20,6 @@ from mbsym.source.examples import example_like, example_names, example_text
 from mbsym.source.starter import JOINTS, NewBody, starter
 from mbsym_cli import new
 from mbsym_cli.main import COMMANDS, GROUPS
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 
 def command(*words: str, code: int | None = None, answers: str | None = None) -> Result:
@@ -127,13 +125,13 @@ def test_like_guesses_at_slips(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_examples_are_the_shipped_systems(tmp_path: Path) -> None:
-    assert set(example_names()) == {path.stem for path in SYSTEMS.glob("*.yaml")}
+    assert set(example_names()) == {path.stem for path in SHIPPED.glob("*.yaml")}
     listed = command("examples").stdout
     assert all(name in listed for name in example_names())
     assert command("examples", "--all", "--out", str(tmp_path / "mine")).exit_code == 0
     for name in example_names():
         text = (tmp_path / "mine" / f"{name}.yaml").read_text(encoding="utf-8")
-        assert text == example_text(name) == (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+        assert text == example_text(name) == (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
     assert command("examples", "ziegler", "--out", str(tmp_path / "mine")).exit_code == 2  # nothing is replaced
     assert command("examples", "zigler").exit_code == 2
 

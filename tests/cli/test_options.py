@@ -14,15 +14,14 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
-from conftest import filed, invoked
+from conftest import SHIPPED, filed, invoked
 
 from mbsym.expressions.parser import names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym_cli.main import main
 from mbsym_cli.options import Options
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
-DOUBLE = SYSTEMS / "double-pendulum.yaml"  # conservative: m1, m2, l1, l2, g positive; theta1, theta2
+DOUBLE = SHIPPED / "double-pendulum.yaml"  # conservative: m1, m2, l1, l2, g positive; theta1, theta2
 DAMPED = """
 mbsym: 1
 name: Damped oscillator
@@ -322,7 +321,7 @@ PLACES = [
 def test_numbers_that_are_none_are_refused_wherever_they_are_typed(place: str, tmp_path: Path) -> None:
     """sqrt(-1), log(0), tan(pi/2) and 1/(2 - 2) are no numbers, and exp(1000) = 2e434 is none that a double holds."""
     files = {"pendulum": "simple-pendulum"}
-    words = re.sub(r"{([\w-]+)}", lambda name: str(SYSTEMS / f"{files.get(name[1], name[1])}.yaml"), place).split()
+    words = re.sub(r"{([\w-]+)}", lambda name: str(SHIPPED / f"{files.get(name[1], name[1])}.yaml"), place).split()
     for number in ("sqrt(-1)", "log(0)", "exp(1000)", "tan(pi/2)", "1/(sqrt(2)**2-2)"):
         done = CliRunner().invoke(main, [word.replace("{}", number) for word in words])
         assert done.exit_code == 2, (number, done.output)

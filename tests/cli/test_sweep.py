@@ -10,16 +10,15 @@ from pathlib import Path
 import jsonschema
 import pytest
 from click.testing import Result
-from conftest import invoked
+from conftest import SHIPPED, invoked
 
 from mbsym.report.schemas import schema
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 PLANE = ["--vary", "alpha=-0.9:0.9:40", "--vary", "gamma=-0.9:0.9:30", "-s", "p1=2/5", "-s", "p2=1/5"]
 
 
 def sweep(name: str, folder: Path, *options: str, code: int | None = None) -> Result:
-    return invoked("sweep", SYSTEMS / f"{name}.yaml", "-o", folder, *options, code=code)
+    return invoked("sweep", SHIPPED / f"{name}.yaml", "-o", folder, *options, code=code)
 
 
 def rows(folder: Path) -> list[dict[str, str]]:

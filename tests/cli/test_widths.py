@@ -6,11 +6,10 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import filed, invoked
+from conftest import SHIPPED, filed, invoked
 
 from mbsym_cli.console import wrapped
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 WIDTH = 80
 
 COMMANDS = [
@@ -29,7 +28,7 @@ COMMANDS = [
 
 
 def called(words: tuple[str, ...], folder: Path, columns: str) -> str:
-    there = [str(SYSTEMS / word) if word.endswith(".yaml") else word for word in words]
+    there = [str(SHIPPED / word) if word.endswith(".yaml") else word for word in words]
     out = ["--out", str(folder / "out"), "--format", "json"] if words[0] == "run" else []
     return invoked(*there, *out, env={"COLUMNS": columns}).output
 

@@ -6,11 +6,10 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import system_of
+from conftest import SHIPPED, system_of
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.point import Balls, Rationals
@@ -31,12 +30,11 @@ from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.scenario import Specialised, scenario, substituted
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 EPS = 2.0**-53
 
 
 def system(name: str) -> System:
-    return system_of(SYSTEMS / f"{name}.yaml")
+    return system_of(SHIPPED / f"{name}.yaml")
 
 
 def errors(code: Code, values: Sequence[float]) -> list[float]:

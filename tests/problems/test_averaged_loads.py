@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
-from conftest import filed, invoked
+from conftest import STATEMENTS, filed, invoked
 from scipy.integrate import solve_ivp
 from terminal import told
 
@@ -28,8 +27,6 @@ from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import averages, contradicts
 from mbsym.simulation.expanded import Measured
 from mbsym.simulation.expanded import average_measured as measured
-
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 
 POINT = """
 mbsym: 1
@@ -316,7 +313,7 @@ def test_what_contradicts_a_result(distances, lie):
 
 
 def test_where_both_motions_rest_nothing_is_measured():
-    told = Analysis(mbsym.loads((CASES / "paul2.yaml").read_text().replace("x: 0.1", "x: 0")).system, (12,))
+    told = Analysis(mbsym.loads((STATEMENTS / "paul2.yaml").read_text().replace("x: 0.1", "x: 0")).system, (12,))
     (one,) = averages(told.small_parameters, told.system)
     assert "tells nothing" in one.measured
     assert not one.withdrawn
@@ -346,7 +343,7 @@ WITHDRAWN = ("withdrawn", "отозван", "se retira")
 def test_an_order_that_is_assumed_wrongly_is_withdrawn_on_every_surface(monkeypatch, tmp_path, power):
     """The planted lie: with v = O(1) or O(eps) V would be 0; the trap oscillates at v/(nu sqrt 2) = 1.77."""
     monkeypatch.setattr(averaging, "orders_of", lambda *given: {"v": power})
-    path = CASES / "paul2.yaml"
+    path = STATEMENTS / "paul2.yaml"
     system = mbsym.load(path).system
     for name, text in _texts(system).items():
         assert not [word for word in (*THEOREM, *POTENTIAL, *KEPT) if word in text], name
@@ -367,7 +364,7 @@ def test_an_order_that_is_assumed_wrongly_is_withdrawn_on_every_surface(monkeypa
 
 def test_the_scaling_stands_beside_the_result_on_every_surface(tmp_path):
     """V = v^2 x^2/(4 nu^2) for v of order 1/eps, the rate as well."""
-    path = CASES / "paul2.yaml"
+    path = STATEMENTS / "paul2.yaml"
     system = mbsym.load(path).system
     texts = _texts(system)
     for name, text in texts.items():
@@ -388,7 +385,7 @@ def test_the_scaling_stands_beside_the_result_on_every_surface(tmp_path):
 
 
 def test_the_command_takes_orders():
-    path = str(CASES / "avgmean.yaml")
+    path = str(STATEMENTS / "avgmean.yaml")
     done = invoked("average", path, "--order", "u=0", "--time", "1", code=0)
     assert "Effective potential: u x^2/4." in done.output
     refused = invoked("average", path, "--order", "q=1", "--order", "u", "--order", "u=x", code=2)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import filed, invoked, system_of
+from conftest import SHIPPED, filed, invoked, system_of
 from jsonschema import Draft202012Validator
 
 import mbsym
@@ -22,8 +22,6 @@ from mbsym.model.system import System
 from mbsym.report.schemas import schema
 from mbsym.source.scaling import read_scaling
 from mbsym.studies.groups import in_scale
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 #: theta'' + 2 zeta theta' + sin(theta) = 0 of (J + m l^2) theta'' + b theta' + m g l sin(theta) = 0, divided through.
 PENDULUM = "theta=phi,t=tau/w,J=j*m*l**2,g=l*(1+j)*w**2,b=2*zeta*m*l**2*(1+j)*w"
@@ -48,14 +46,14 @@ def shown(*arguments: str) -> str:
 
 
 def test_the_pendulum_divided_through_by_hand() -> None:
-    path = str(SYSTEMS / "simple-pendulum.yaml")
+    path = str(SHIPPED / "simple-pendulum.yaml")
     assert shown(path, "equations", "--scale", PENDULUM) == "(j + 1) (phi'' + 2 zeta phi' + sin(phi)) = 0\n"
     assert shown(path, "T", "K", "--scale", PENDULUM) == "T = (j + 1) phi'^2/2\nK = j + 1\n"
 
 
 def test_the_spring_pendulum_divided_through_by_hand() -> None:
     """x = r/l0, nu = m g/(k l0):  x'' - x theta'^2 + x - 1 = nu cos(theta),  (x^2 theta')' + nu x sin(theta) = 0."""
-    told = shown(str(SYSTEMS / "spring-pendulum.yaml"), "equations", "--scale", SPRING)
+    told = shown(str(SHIPPED / "spring-pendulum.yaml"), "equations", "--scale", SPRING)
     assert told == "x (theta'' x + 2 theta' x' + nu sin(theta)) = 0\nx'' + x - theta'^2 x - nu cos(theta) - 1 = 0\n"
 
 
@@ -73,7 +71,7 @@ AREA = "eps*(a*p1*h1 + b*q1*h2 + y1*h1) + (r1 + nz)*h3"
 
 def test_the_equations_5_of_the_fast_gyrostat() -> None:
     """And the area integral of (6), (7); they are those of the paper, identically."""
-    system = mbsym.load(SYSTEMS / "gyrostat-fast.yaml").system
+    system = mbsym.load(SHIPPED / "gyrostat-fast.yaml").system
     found = Formulas(system, scaling(system, GYROSTAT))
     lower = Lowering(found.ring, ring_environment(found.system, found.ring))
 
@@ -86,7 +84,7 @@ def test_the_equations_5_of_the_fast_gyrostat() -> None:
     assert [found.row(x).polynomial for x in rows] == [printed(text) for text in PRINTED]
     area = next(x.formula for x in found.analysis.integrals if "angular momentum" in x.name)
     assert found.row(area, constant=True).polynomial == printed(AREA)
-    told = shown(str(SYSTEMS / "gyrostat-fast.yaml"), "--scale", GYROSTAT)
+    told = shown(str(SHIPPED / "gyrostat-fast.yaml"), "--scale", GYROSTAT)
     assert "h1' = r1 h2 - eps q1 h3\n" in told
     with pytest.raises(NoDescription, match="unit vector"):
         in_variables(system, scaling(system, GYROSTAT))
@@ -106,7 +104,7 @@ def test_the_equations_5_of_the_fast_gyrostat() -> None:
 )
 def test_scaled_equations_are_those_of_the_system(name: str, text: str) -> None:
     """``in_variables`` demands it identically in the ring; here it is seen that a slip shows."""
-    system = mbsym.load(SYSTEMS / f"{name}.yaml").system
+    system = mbsym.load(SHIPPED / f"{name}.yaml").system
     own = scaling(system, text)
     found = in_scale(system, own)
     assert not {one.name for one in own.variables if one.name != one.new} & {*found.coordinates, *found.variables}
@@ -123,7 +121,7 @@ def test_scaled_equations_are_those_of_the_system(name: str, text: str) -> None:
 
 def test_scaled_systems_have_scaled_solutions() -> None:
     """Both are integrated to 1e-12; x(tau) = r(tau/w)/l0 with w^2 = k/m = 40, to all those digits."""
-    analysis = mbsym.load(SYSTEMS / "spring-pendulum.yaml")
+    analysis = mbsym.load(SHIPPED / "spring-pendulum.yaml")
     there = Analysis(in_scale(analysis.system, scaling(analysis.system, "r=l0/2*x,t=tau/w,k=m*w**2,g=l0*w**2*nu")))
     rate = 40**0.5
     theta, r = mbsym.simulate(analysis, 2, accuracy=1e-12).coordinates[:, -1]
@@ -169,7 +167,7 @@ def test_a_number_with_a_dimension_has_no_place_among_dimensionless_ones(text: s
 
 def test_what_nothing_measures_is_named() -> None:
     """The sleigh's speed v may have either sign, and no other name holds the time."""
-    system = mbsym.load(SYSTEMS / "chaplygin-sleigh.yaml").system
+    system = mbsym.load(SHIPPED / "chaplygin-sleigh.yaml").system
     with pytest.raises(NoDescription, match="measures v"):
         in_variables(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j"))
     assert in_scale(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j,t=tau*a/u,v=u*w"))
@@ -205,14 +203,14 @@ def test_signs_go_over_to_what_is_put_in() -> None:
 )
 def test_what_is_wrong_is_said_at_its_place(text: str, code: str, place: int, words: str) -> None:
     complaints = Complaints()
-    assert read_scaling(text, mbsym.load(SYSTEMS / "spring-pendulum.yaml").system, complaints) is None
+    assert read_scaling(text, mbsym.load(SHIPPED / "spring-pendulum.yaml").system, complaints) is None
     first = complaints.sorted()[0]
     assert (first.code, first.span and first.span.column - 1) == (code, place), first
     assert words in str(first.message)
 
 
 def test_groups_propose_a_scaling_that_converts(tmp_path: Path) -> None:
-    path = str(SYSTEMS / "double-pendulum.yaml")
+    path = str(SHIPPED / "double-pendulum.yaml")
     told = invoked("groups", path, env={"COLUMNS": "70"}).output
     (line,) = (one for one in told.splitlines() if "--scale" in one)  # in one line, as it is pasted
     proposal = line.partition('--scale "')[2].partition('"')[0]
@@ -247,7 +245,7 @@ def test_groups_as_json_have_no_dimension() -> None:
             sum((Fraction(x) * dimensions[name][axis] for name, x in powers.items()), Fraction(0)) for axis in range(3)
         ]
 
-    done = invoked("groups", SYSTEMS / "spring-pendulum.yaml", "--json", code=0)
+    done = invoked("groups", SHIPPED / "spring-pendulum.yaml", "--json", code=0)
     found = json.loads(done.stdout)
     assert list(Draft202012Validator(schema("groups")).iter_errors(found)) == []
     assert len(found["groups"]) == 1

@@ -6,7 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import invoked
+from conftest import SHIPPED, invoked
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -16,11 +16,9 @@ from mbsym.model.system import rational
 from mbsym.problems.scaling import Group, Groups, groups, linear_groups
 from mbsym.problems.stability.problem import prepared_parts
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
-
 
 def analysed(name: str) -> Analysis:
-    return mbsym.load(SYSTEMS / f"{name}.yaml")
+    return mbsym.load(SHIPPED / f"{name}.yaml")
 
 
 def found(name: str) -> Groups:
@@ -104,7 +102,7 @@ def test_a_wrong_group_is_noticed() -> None:
 
 def test_the_command_writes_a_description_that_runs(tmp_path: Path) -> None:
     out = tmp_path / "groups.yaml"
-    done = invoked("groups", SYSTEMS / "spring-pendulum.yaml", "--out", out, code=0)
+    done = invoked("groups", SHIPPED / "spring-pendulum.yaml", "--out", out, code=0)
     assert "g stands for g*m/(k*l0)" in done.output
     again = invoked("groups", out)
     assert "g = 1" not in again.output  # what is a group stays one

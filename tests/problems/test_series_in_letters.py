@@ -8,7 +8,7 @@ from math import factorial
 from pathlib import Path
 
 import pytest
-from conftest import filed, invoked, system_of
+from conftest import SHIPPED, filed, invoked, system_of
 
 from mbsym.algebra.base import Lowering
 from mbsym.analysis import Analysis, oscillating
@@ -19,7 +19,6 @@ from mbsym.expressions.tree import ONE, names, substitute
 from mbsym.model.system import rational
 from mbsym.source.scaling import read_scaling
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 #: (4) of the paper on gyrostat-fast.yaml without the powers of eps, which stand before the coefficients.
 GYROSTAT = (
     "p=r_0*p1,q=r_0*q1,r=r_0*r1,gamma1=gamma3_0*h1,gamma2=gamma3_0*h2,gamma3=gamma3_0*h3,t=tau/r_0,A=a*C,B=b*C,x0=L*x,"
@@ -58,7 +57,7 @@ def told(text: str, order: int, scale: str) -> tuple[Oscillating, Oscillating]:
 
 @pytest.fixture(scope="module")
 def gyrostat() -> tuple[Oscillating, Oscillating]:
-    return told((SYSTEMS / "gyrostat-fast.yaml").read_text(), 2, GYROSTAT)
+    return told((SHIPPED / "gyrostat-fast.yaml").read_text(), 2, GYROSTAT)
 
 
 #: The right solution in the place of (41), by hand and with sympy (references: gyrostat, 2.2), in the paper's symbols.
@@ -215,7 +214,7 @@ def test_the_command_tells_them(tmp_path: Path) -> None:
 
 
 def test_common_denominators_stand_once_in_the_text() -> None:
-    words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
+    words = ["oscillations", str(SHIPPED / "gyrostat-fast.yaml"), "--order", "1"]
     done = invoked(*words, "--in", "none")
     assert "p(0) = -lx r_0/D1\n" in done.output
     assert "D1 = r_0 (A - C) - lz\n" in done.output
@@ -223,7 +222,7 @@ def test_common_denominators_stand_once_in_the_text() -> None:
 
 def test_the_authors_letters_come_before_denominators_of_ours() -> None:
     """(41) of the paper: what is shorter in them has no D1, and no D is explained that does not stand there."""
-    words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
+    words = ["oscillations", str(SHIPPED / "gyrostat-fast.yaml"), "--order", "1"]
     done = invoked(*words).output
     assert "p(0) = P0 r_0\n" in done
     assert "gamma2(1) = P0 gamma3_0 sin(phase)\n" in done

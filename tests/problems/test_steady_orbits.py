@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import system_of
+from conftest import SHIPPED, system_of
 
 import mbsym
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import Value, given_values
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
 from mbsym.problems.stability.words import Word
-
-SYSTEMS = Path(__file__).parent.parent.parent / "systems"
 
 
 def listed(text: str, **values: Value) -> Equilibria:
@@ -24,7 +21,7 @@ def listed(text: str, **values: Value) -> Equilibria:
 
 
 def shipped(name: str, *changes: tuple[str, str]) -> str:
-    text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
     for old, new in changes:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
@@ -58,7 +55,7 @@ def test_the_disc_of_the_description_is_among_them() -> None:
     """And it is judged as problem 6 does, by another route: a first approximation in the coordinates."""
     found = listed(shipped("rolling-disc-in-a-circle"))
     described = next(x for x in found.equilibria if x.values[0].text == "pi/6")
-    judged = mbsym.load(SYSTEMS / "rolling-disc-in-a-circle.yaml").stability.numerical
+    judged = mbsym.load(SHIPPED / "rolling-disc-in-a-circle.yaml").stability.numerical
     assert judged is not None
     assert described.verdict.word is judged.word is Word.STABLE_BUT_CYCLIC
 
@@ -100,7 +97,7 @@ def test_a_snakeboard_circles_with_its_trucks_turned() -> None:
     assert place["theta_dot"] == pytest.approx(-math.tan(place["phi"]) / 0.2)
     assert place["y_dot"] == 0
     assert column(listed(shipped("snakeboard")), "phi") == pytest.approx([0, math.pi])
-    table = mbsym.equilibria(SYSTEMS / "snakeboard.yaml").table
+    table = mbsym.equilibria(SHIPPED / "snakeboard.yaml").table
     assert list(table["y_dot"]) == [0, 0]
 
 
@@ -221,7 +218,7 @@ def test_the_circles_of_the_bicycle() -> None:
 
     Each is one: integrated for a second by the compiled equations with all rows, lean and steer stay.
     """
-    path = SYSTEMS / "bicycle.yaml"
+    path = SHIPPED / "bicycle.yaml"
     system = mbsym.load(path).system
     found = relative_equilibria(system, given_values(system, {}))
     rows = [({x.name: x.value for x in each.values}, each.verdict.word) for each in found.equilibria]

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import analysed
+from conftest import SHIPPED, analysed
 from flint import arb
 
 import mbsym
@@ -27,12 +27,11 @@ from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis
 from mbsym.source import read
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 REFERENCES = Path(__file__).parents[1] / "references"
 
 
 def text_of(name: str, *changes: tuple[str, str]) -> str:
-    text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
     for old, new in changes:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
@@ -41,7 +40,7 @@ def text_of(name: str, *changes: tuple[str, str]) -> str:
 
 @cache
 def shipped(name: str) -> Analysis:
-    return mbsym.load(SYSTEMS / f"{name}.yaml")
+    return mbsym.load(SHIPPED / f"{name}.yaml")
 
 
 class AtState:
@@ -97,7 +96,7 @@ def test_the_disc_has_all_ten_published_rates(case: str) -> None:
 
 def test_problems_4_to_6_of_the_disc_are_those_in_coordinates() -> None:
     """3 r w^2 > g of the upright disc (Neimark & Fufaev), whatever the speeds are."""
-    found, plain = shipped("rolling-disc-speeds"), mbsym.load(SYSTEMS / "rolling-disc.yaml", (4, 5, 6))
+    found, plain = shipped("rolling-disc-speeds"), mbsym.load(SHIPPED / "rolling-disc.yaml", (4, 5, 6))
     conditions = [(str(x), relation) for part in found.stability.subsystems for _, x, relation in part.conditions]
     assert conditions == [("3*r*w**2 - g", ">")]
     assert [str(x) for x in found.linearisation.matrices] == [str(x) for x in plain.linearisation.matrices]
@@ -334,7 +333,7 @@ def test_a_mistake_is_found(
     monkeypatch: pytest.MonkeyPatch, module: Any, function: str, mistake: Callable[..., Any], check: str
 ) -> None:
     monkeypatch.setattr(module, function, mistake(getattr(module, function)))
-    analysis = mbsym.load(SYSTEMS / "rolling-disc-speeds.yaml", (3, 7))
+    analysis = mbsym.load(SHIPPED / "rolling-disc-speeds.yaml", (3, 7))
     analysis.stage(3)
     found = analysis.check(check)
     assert found is not None

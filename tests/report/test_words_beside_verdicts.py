@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import SHIPPED, filed, invoked
+from conftest import SHIPPED, STATEMENTS, filed, invoked
 from terminal import told
 
 import mbsym
@@ -26,7 +26,6 @@ from mbsym.report.sections import equilibrium, stability
 from mbsym.report.targets import TARGETS
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
-STATEMENTS = Path(__file__).parents[1] / "cases" / "statements"
 
 SLEIGH = """
 mbsym: 1
