@@ -39,7 +39,9 @@ from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
+from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import Library
+from mbsym.numerics.scenario import scenario
 from mbsym.report import whole_run
 from mbsym.source import load, read
 from mbsym_cli.main import main
@@ -80,6 +82,32 @@ def system_of(source: str | Path, filename: str = "<string>") -> System:
 def analysed(source: str | Path, problems: Iterable[int] | None = None) -> Analysis:
     """The analysis of a description that is read without a mistake; further complaints are not looked for."""
     return Analysis(system_of(source), problems)
+
+
+def text_of(name: str, *changes: tuple[str, str]) -> str:
+    """A shipped description, in which what stands there once is changed."""
+    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
+def dynamics_of(source: str | Path) -> Dynamics:
+    """The equations of a description with its own numbers, as codes."""
+    return Dynamics(scenario((mbsym.load(source) if isinstance(source, Path) else mbsym.loads(source)).system))
+
+
+@pytest.fixture(scope="module")
+def mathics() -> Any:
+    """Another reader of Wolfram's language than Wolfram's own."""
+    pytest.importorskip("mathics")
+    from mathics.core.load_builtin import import_and_load_builtins
+
+    import_and_load_builtins()
+    from mathics.session import MathicsSession
+
+    return MathicsSession(add_builtin=True, character_encoding="UTF-8")
 
 
 def filed(path: Path, text: str) -> Path:

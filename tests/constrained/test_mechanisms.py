@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import system_of
+from conftest import reference, system_of
 from scipy.integrate import solve_ivp
 
 from mbsym.numerics.conservation import Standing
@@ -22,10 +21,6 @@ from mbsym.simulation import Request, simulate
 from mbsym.simulation.accurate import simulate_accurately
 
 TESTS = Path(__file__).parents[1]
-
-
-def reference(name: str) -> Any:
-    return json.loads((TESTS / "references" / f"{name}.json").read_text(encoding="utf-8"))
 
 
 def shipped(name: str) -> Scenario:

@@ -8,14 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import filed, invoked
+from conftest import dynamics_of, filed, invoked
 
-import mbsym
-from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Setting, Work
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import FOLLOWED, cost
-from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import reference_search
 from mbsym.numerics.trade.comparison import compared
 from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
@@ -38,10 +35,6 @@ loads:
 values: {m: 1, k: 1, c: 1/2}
 initial: {x: 1}
 """
-
-
-def dynamics_of(text: str) -> Dynamics:
-    return Dynamics(scenario(mbsym.loads(text).system))
 
 
 def test_the_energy_that_a_damper_takes_is_no_error_of_a_method() -> None:

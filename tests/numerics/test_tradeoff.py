@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import filed, invoked
+from conftest import dynamics_of, filed, invoked
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
@@ -46,10 +46,6 @@ motion: {theta: 0}
 values: {m: 1, L: 1, g: 9.81}
 initial: {theta: -pi/2}
 """
-
-
-def dynamics_of(text: str) -> Dynamics:
-    return Dynamics(scenario(mbsym.loads(text).system))
 
 
 def shipped(name: str, **values: int | Fraction) -> Dynamics:

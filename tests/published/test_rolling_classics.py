@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, analysed
+from conftest import SHIPPED, analysed, text_of
 from flint import arb
 
 import mbsym
@@ -27,11 +27,7 @@ def shipped(name: str) -> Analysis:
 
 
 def changed(name: str, *changes: tuple[str, str]) -> Analysis:
-    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return analysed(text)
+    return analysed(text_of(name, *changes))
 
 
 def parameters(analysis: Analysis) -> dict[str, Polynomial]:

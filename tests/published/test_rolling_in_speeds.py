@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, analysed
+from conftest import SHIPPED, analysed, text_of
 from flint import arb
 
 import mbsym
@@ -28,14 +28,6 @@ from mbsym.problems.constraints import analysis
 from mbsym.source import read
 
 REFERENCES = Path(__file__).parents[1] / "references"
-
-
-def text_of(name: str, *changes: tuple[str, str]) -> str:
-    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return text
 
 
 @cache

@@ -523,17 +523,6 @@ def test_reports_are_the_same_byte_for_byte():
 # --- Wolfram Language ---
 
 
-@pytest.fixture(scope="module")
-def mathics():
-    pytest.importorskip("mathics")
-    from mathics.core.load_builtin import import_and_load_builtins
-
-    import_and_load_builtins()
-    from mathics.session import MathicsSession
-
-    return MathicsSession(add_builtin=True, character_encoding="UTF-8")
-
-
 @pytest.mark.parametrize("name", ["nasty", "ziegler-damped.yaml"])
 def test_wolfram_reads_the_report_and_gets_the_same_numbers(name, mathics):
     from mbsym.formulas.wolfram import wolfram_names
