@@ -3,21 +3,33 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, system_of, text_of
 
 import mbsym
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import Value, given_values
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
 from mbsym.problems.stability.words import Word
+from mbsym.source import read
+
+SYSTEMS = Path(__file__).parent.parent.parent / "systems"
 
 
 def listed(text: str, **values: Value) -> Equilibria:
-    system = system_of(text)
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
     return relative_equilibria(system, given_values(system, values))
+
+
+def shipped(name: str, *changes: tuple[str, str]) -> str:
+    text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
 
 
 def column(equilibria: Equilibria, name: str) -> list[float]:
@@ -34,7 +46,7 @@ def test_all_circles_of_a_rolling_disc(yaw: float, spin: float) -> None:
     angles = np.linspace(-math.pi, math.pi, 20_001) + 1e-5
     moment = 6 * r * w * yaw * np.cos(angles) + (5 * r * yaw**2 * np.cos(angles) + 4 * g) * np.sin(angles)
     roots = angles[:-1][moment[:-1] * moment[1:] < 0]
-    text = text_of("rolling-disc-in-a-circle", ("w: {sign: real, meaning: spin}", f"w: {{value: {spin}}}"))
+    text = shipped("rolling-disc-in-a-circle", ("w: {sign: real, meaning: spin}", f"w: {{value: {spin}}}"))
     text = text.replace("relations: {w: -5*W*sin(L)/6 - 2*g*sin(L)/(3*r*W*cos(L))}\n", "").replace(
         "value: 2,", f"value: {yaw},"
     )
@@ -45,9 +57,9 @@ def test_all_circles_of_a_rolling_disc(yaw: float, spin: float) -> None:
 
 def test_the_disc_of_the_description_is_among_them() -> None:
     """And it is judged as problem 6 does, by another route: a first approximation in the coordinates."""
-    found = listed(text_of("rolling-disc-in-a-circle"))
+    found = listed(shipped("rolling-disc-in-a-circle"))
     described = next(x for x in found.equilibria if x.values[0].text == "pi/6")
-    judged = mbsym.load(SHIPPED / "rolling-disc-in-a-circle.yaml").stability.numerical
+    judged = mbsym.load(SYSTEMS / "rolling-disc-in-a-circle.yaml").stability.numerical
     assert judged is not None
     assert described.verdict.word is judged.word is Word.STABLE_BUT_CYCLIC
 
@@ -55,7 +67,7 @@ def test_the_disc_of_the_description_is_among_them() -> None:
 @pytest.mark.parametrize(("w", "word"), [(5, Word.STABLE_BUT_CYCLIC), (1, Word.UNSTABLE)])
 def test_an_upright_disc_needs_its_critical_spin(w: int, word: Word) -> None:
     """w^2 > g/(3 r) = 12.6 (Neimark & Fufaev, chapter V); below the ground, lean = pi, it is a pendulum and hangs."""
-    found = listed(text_of("rolling-disc", ("w: 5}", f"w: {w}}}")))
+    found = listed(shipped("rolling-disc", ("w: 5}", f"w: {w}}}")))
     words = {x.values[0].text: x.verdict.word for x in found.equilibria}
     assert words == {"0": word, "pi": Word.STABLE_BUT_CYCLIC}
 
@@ -65,7 +77,7 @@ SLOPE = (("vector: [0, 0, -g]", "vector: [3, 0, -4]"), ("g: {sign: positive, mea
 
 def test_on_a_slope_a_disc_rolls_steadily_along_horizontal_lines_alone() -> None:
     """Gravity (3, 0, -4): its plane upright, tan lean = -+3/4, along y or against it; downhill it rolls ever faster."""
-    text = text_of("rolling-disc", *SLOPE).replace("g: 9.81, ", "")
+    text = shipped("rolling-disc", *SLOPE).replace("g: 9.81, ", "")
     places = {tuple(round(x.value, 6) for x in each.values) for each in listed(text).equilibria}
     lean = math.atan2(3, 4)
     expected = {
@@ -82,14 +94,14 @@ def test_on_a_slope_a_disc_rolls_steadily_along_horizontal_lines_alone() -> None
 
 def test_a_snakeboard_circles_with_its_trucks_turned() -> None:
     """y' = 0 and l theta' = -v tan phi at theta = 0, for every phi: a family; straight on where theta is to rest."""
-    told = listed(text_of("snakeboard", ("motion: {x: {rate: v}, theta: 0,", "motion: {x: {rate: v},")))
+    told = listed(shipped("snakeboard", ("motion: {x: {rate: v}, theta: 0,", "motion: {x: {rate: v},")))
     (family,) = told.families
     place = {x.name: x.value for x in family.sample}
     assert family.dimension == 1
     assert place["theta_dot"] == pytest.approx(-math.tan(place["phi"]) / 0.2)
     assert place["y_dot"] == 0
-    assert column(listed(text_of("snakeboard")), "phi") == pytest.approx([0, math.pi])
-    table = mbsym.equilibria(SHIPPED / "snakeboard.yaml").table
+    assert column(listed(shipped("snakeboard")), "phi") == pytest.approx([0, math.pi])
+    table = mbsym.equilibria(SYSTEMS / "snakeboard.yaml").table
     assert list(table["y_dot"]) == [0, 0]
 
 
@@ -172,7 +184,7 @@ def test_two_wheels_on_an_axle(axle: dict[str, str], rates: tuple[int, int], wor
 
 def test_of_a_sleigh_that_moves_no_position_is_told_to_be_one_of_rest() -> None:
     for v, rests in ((1, False), (0, True)):
-        found = listed(text_of("chaplygin-sleigh", ("a: 0.3, v: 1", f"a: 0.3, v: {v}")))
+        found = listed(shipped("chaplygin-sleigh", ("a: 0.3, v: 1", f"a: 0.3, v: {v}")))
         assert ("every position is an equilibrium" in found.remarks) is rests
 
 
@@ -210,7 +222,7 @@ def test_the_circles_of_the_bicycle() -> None:
 
     Each is one: integrated for a second by the compiled equations with all rows, lean and steer stay.
     """
-    path = SHIPPED / "bicycle.yaml"
+    path = SYSTEMS / "bicycle.yaml"
     system = mbsym.load(path).system
     found = relative_equilibria(system, given_values(system, {}))
     rows = [({x.name: x.value for x in each.values}, each.verdict.word) for each in found.equilibria]
