@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 
 import properties  # noqa: F401  (before the command line asks for one of its profiles)
 import pytest
+from click.testing import CliRunner, Result
 from durations import (  # noqa: F401
     pytest_addoption,
     pytest_collection_modifyitems,
@@ -38,8 +39,12 @@ from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
+from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import Library
+from mbsym.numerics.scenario import scenario
 from mbsym.report import whole_run
+from mbsym.source import load, read
+from mbsym_cli.main import main
 
 T = TypeVar("T")
 
@@ -60,9 +65,62 @@ MOST_SHARED = 100
 
 SHIPPED = TESTS.parent / "systems"
 OWN = TESTS / "systems"
+#: Descriptions about which something false was once said.
+STATEMENTS = TESTS / "cases" / "statements"
 
 #: Those that move: not given by their matrices.
 WITH_BODIES = [path for path in sorted(SHIPPED.glob("*.yaml")) if "\nbodies:" in path.read_text(encoding="utf-8")]
+
+
+def system_of(source: str | Path, filename: str = "<string>") -> System:
+    """The system of a description, a text or a file, that is read without a mistake."""
+    system, complaints = read(source, filename) if isinstance(source, str) else load(source)[:2]
+    assert system is not None, [one.message for one in complaints]
+    return system
+
+
+def analysed(source: str | Path, problems: Iterable[int] | None = None) -> Analysis:
+    """The analysis of a description that is read without a mistake; further complaints are not looked for."""
+    return Analysis(system_of(source), problems)
+
+
+def text_of(name: str, *changes: tuple[str, str]) -> str:
+    """A shipped description, in which what stands there once is changed."""
+    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
+def dynamics_of(source: str | Path) -> Dynamics:
+    """The equations of a description with its own numbers, as codes."""
+    return Dynamics(scenario((mbsym.load(source) if isinstance(source, Path) else mbsym.loads(source)).system))
+
+
+@pytest.fixture(scope="module")
+def mathics() -> Any:
+    """Another reader of Wolfram's language than Wolfram's own."""
+    pytest.importorskip("mathics")
+    from mathics.core.load_builtin import import_and_load_builtins
+
+    import_and_load_builtins()
+    from mathics.session import MathicsSession
+
+    return MathicsSession(add_builtin=True, character_encoding="UTF-8")
+
+
+def filed(path: Path, text: str) -> Path:
+    """The path, where now a file holds the text."""
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def invoked(*words: object, code: int | None = None, **how: Any) -> Result:
+    """What ``mbsym`` with these words does in this process, where no error is left uncaught; it ends with ``code``."""
+    done = CliRunner().invoke(main, list(map(str, words)), catch_exceptions=False, **how)
+    assert code in (None, done.exit_code), done.output
+    return done
 
 
 def reference(name: str) -> Any:

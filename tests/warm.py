@@ -26,6 +26,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from conftest import filed
+
 #: What the script ``mbsym`` does.
 COMMAND = "import sys; from mbsym_cli.process import command; sys.argv[0] = 'mbsym'; command()"
 
@@ -88,8 +90,7 @@ def script(folder: Path) -> None:
     address = _address(_server().pid)
     while not address.exists():  # it is loading
         time.sleep(0.01)
-    file = folder / "mbsym"
-    file.write_text(SCRIPT.format(python=sys.executable, address=str(address)), encoding="utf-8")
+    file = filed(folder / "mbsym", SCRIPT.format(python=sys.executable, address=str(address)))
     file.chmod(0o755)
 
 

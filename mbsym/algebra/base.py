@@ -22,8 +22,8 @@ from typing import Any, Generic, Protocol, Self, TypeVar
 from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.rates import is_rate
-from mbsym.expressions.table import Table
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, curve_name
+from mbsym.expressions.table import Table, curve_name
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 
 
 class Summable(Protocol):

@@ -192,7 +192,7 @@ class Tabulated(str):
         return tabulated
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _called, (self.curve.table, self.curve.order)
+        return curve_name, (self.curve.table, self.curve.order)
 
     @property
     def table(self) -> Table:
@@ -209,7 +209,8 @@ class Tabulated(str):
         return Tabulated(self.curve.derivative)
 
 
-def _called(table: Table, order: int) -> Tabulated:
+def curve_name(table: Table, order: int = 0) -> Tabulated:
+    """The name in algebras of a derivative of what a table is."""
     tabulated = table.called
     for _ in range(order):
         tabulated = tabulated.slope

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import is_velocity
-from mbsym.expressions.table import Curve, Table, Tabulated
+from mbsym.expressions.table import Curve, Table, curve_name
 
 #: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.
 SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
@@ -130,14 +130,6 @@ def names(expression: Expression) -> set[str]:
 def curve_of(table: Table, order: int = 0) -> Curve:
     """A derivative of what a table is, jumps at its ends apart."""
     return curve_name(table, order).curve
-
-
-def curve_name(table: Table, order: int = 0) -> Tabulated:
-    """Its name in algebras."""
-    tabulated = table.called
-    for _ in range(order):
-        tabulated = tabulated.slope
-    return tabulated
 
 
 #: A table with more points is not written out by moduli.

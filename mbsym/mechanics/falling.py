@@ -29,7 +29,7 @@ from mbsym.algebra.vectors import Vector
 from mbsym.expressions.tree import names
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import force_function
+from mbsym.mechanics.loads.kinds import force_function, lifting
 from mbsym.mechanics.loads.orbit import outward
 from mbsym.mechanics.newton_euler import origin_acceleration
 from mbsym.mechanics.variables import expressions, ring_environment
@@ -109,27 +109,8 @@ def relative_lagrangian(scene: Scene[S]) -> tuple[S, S]:
     relative, algebra = falling_scene(scene), scene.algebra
     force = force_function(relative)
     for about, w in felt.items():
-        force = force - _work(relative, about, w)
+        force = force - lifting(relative, about, w)
     return kinetic_energy(relative), algebra.reduce(force)
-
-
-def _work(scene: Scene[S], about: str, w: Vector[S]) -> S:
-    """w.S = sum of m w.c over the bodies that a frame carries, c from its origin; w turns outwards with the bodies."""
-    algebra = scene.algebra
-    field: dict[str, Vector[S]] = {about: w}
-    height: dict[str, S] = {about: algebra.zero}
-    total = algebra.zero
-    for name, motion in scene.motions.items():
-        parent = motion.body.attached_to
-        if name != about:
-            if parent not in field:
-                continue
-            field[name] = scene.to_axes(field[parent], name)
-            height[name] = algebra.reduce(height[parent] + field[parent].dot(motion.offset))
-        if not algebra.vanishes(motion.mass):
-            rise = height[name] + field[name].dot(motion.mass_centre)
-            total = total + algebra.times(motion.mass, rise)
-    return algebra.reduce(total)
 
 
 def overrides(scene: Scene[S], base: Vector[S]) -> Mapping[str, Vector[S]]:

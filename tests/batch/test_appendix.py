@@ -6,10 +6,9 @@ import re
 from collections import Counter
 from pathlib import Path
 
-from click.testing import CliRunner
+from conftest import invoked
 
 from mbsym.report.latex.labels import labels
-from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 from tests.report.test_latex_documents import CLASSES, PREAMBLE, complaints
 
@@ -30,7 +29,7 @@ def folder_with(tmp_path: Path) -> Path:
 def test_a_folder_is_joined(tmp_path: Path) -> None:
     out = tmp_path / "build"
     words = ["batch", str(folder_with(tmp_path)), "--out", str(out), "--format", "latex", "--appendix", "--quiet"]
-    first = CliRunner().invoke(main, words)
+    first = invoked(*words)
     assert first.exit_code == 2, first.output  # one description is wrong
     text = (out / "appendix.tex").read_text()
     assert len(re.findall(r"^\\section\{", text, re.MULTILINE)) == 4
@@ -41,11 +40,10 @@ def test_a_folder_is_joined(tmp_path: Path) -> None:
     body = "\\begin{document}\\appendix\\input{appendix}\\end{document}\n"
     (tmp_path / "main.tex").write_text(f"{CLASSES['two columns']}\n{PREAMBLE}{body}")
     assert complaints(tmp_path, 2) == []
-    CliRunner().invoke(main, words)  # nothing is derived again
+    invoked(*words)  # nothing is derived again
     assert (out / "appendix.tex").read_text() == text
 
 
 def test_it_needs_latex(tmp_path: Path) -> None:
-    done = CliRunner().invoke(main, ["batch", str(tmp_path), "--format", "json", "--appendix"])
-    assert done.exit_code == 2
+    done = invoked("batch", tmp_path, "--format", "json", "--appendix", code=2)
     assert "add latex to --format" in done.output

@@ -17,9 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-
-from mbsym_cli.main import main
+from conftest import invoked
 
 pytestmark = [
     pytest.mark.skipif(find_spec("distributed") is None, reason="needs the extra 'cluster'"),
@@ -87,7 +85,7 @@ def _files(out: Path) -> dict[str, bytes]:
 
 def test_a_lost_worker_is_made_up_for_and_results_are_the_same_bytes(cluster: Here) -> None:
     systems, out = cluster.folder / "systems", cluster.folder / "build"
-    assert CliRunner().invoke(main, ["examples", *SYSTEMS, "--out", str(systems)]).exit_code == 0
+    assert invoked("examples", *SYSTEMS, "--out", systems).exit_code == 0
     words = ["batch", str(systems), "--format", "json,python"]
     command = [*MBSYM, *words, "--out", str(out), "--cluster", cluster.address]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as batch:
@@ -106,7 +104,7 @@ def test_a_lost_worker_is_made_up_for_and_results_are_the_same_bytes(cluster: He
 
 def test_a_budget_is_met_at_the_worker_and_nothing_is_left_there(cluster: Here) -> None:
     systems = cluster.folder / "systems"
-    CliRunner().invoke(main, ["examples", "satellite", "--out", str(systems)])
+    invoked("examples", "satellite", "--out", systems)
     words = [
         "batch",
         str(systems),
@@ -125,10 +123,9 @@ def test_a_budget_is_met_at_the_worker_and_nothing_is_left_there(cluster: Here) 
 
 def test_no_cluster_is_a_complaint_with_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mbsym.batch.cluster.CONNECT", 1.0)
-    CliRunner().invoke(main, ["examples", "ziegler", "--out", str(tmp_path / "s")])
+    invoked("examples", "ziegler", "--out", tmp_path / "s")
     words = ["batch", str(tmp_path / "s"), "--out", str(tmp_path / "b"), "--cluster"]
-    done = CliRunner().invoke(main, [*words, "tcp://127.0.0.1:9"])
-    assert done.exit_code == 2
+    done = invoked(*words, "tcp://127.0.0.1:9", code=2)
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr
     assert not (tmp_path / "b" / "ziegler").exists()
     sweep = [
@@ -140,12 +137,10 @@ def test_no_cluster_is_a_complaint_with_what_to_do(tmp_path: Path, monkeypatch: 
         str(tmp_path / "w"),
         "--cluster",
     ]
-    done = CliRunner().invoke(main, [*sweep, "tcp://127.0.0.1:9"])
-    assert done.exit_code == 2
+    done = invoked(*sweep, "tcp://127.0.0.1:9", code=2)
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr
     monkeypatch.setitem(sys.modules, "distributed", None)
-    done = CliRunner().invoke(main, [*words, "local"])
-    assert done.exit_code == 2
+    done = invoked(*words, "local", code=2)
     assert "pip install 'mbsym[cluster]'" in done.stderr
 
 
@@ -171,7 +166,7 @@ def test_a_sweep_on_workers_gives_the_bytes_of_one_here(cluster: Here) -> None:
 
 def test_a_server_of_another_kind_is_no_scheduler(tmp_path: Path) -> None:
     """Eight bytes of what it says, "HTTP/1.1", are 3.5e18 as the number of frames of a message: no lack of memory."""
-    CliRunner().invoke(main, ["examples", "ziegler", "--out", str(tmp_path / "s")])
+    invoked("examples", "ziegler", "--out", tmp_path / "s")
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def answer() -> None:

@@ -9,13 +9,12 @@ from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
 
-from click.testing import CliRunner
+from conftest import invoked
 
 from mbsym.batch.index_page import index_page
 from mbsym.batch.junit import junit
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row, Summary, findings
 from mbsym.report.language import Language
-from mbsym_cli.main import main
 
 HOSTILE = "</script><script>alert(1)</script> ]]> \x1b[2J \x00 & \" '\n::error::x"
 
@@ -172,7 +171,7 @@ def test_the_page_shows_everything_and_runs_nothing() -> None:
 def test_the_command_writes_them(tmp_path: Path) -> None:
     systems, out = tmp_path / "systems", tmp_path / "build"
     systems.mkdir()
-    CliRunner().invoke(main, ["examples", "simple-pendulum", "--out", str(systems)])
+    invoked("examples", "simple-pendulum", "--out", systems)
     (systems / "wrong.yaml").write_text("mbsym: 1\nname: x\nbodies: []\n", encoding="utf-8")
     words = [
         "batch",
@@ -186,8 +185,7 @@ def test_the_command_writes_them(tmp_path: Path) -> None:
         "--output-format",
         "github",
     ]
-    done = CliRunner().invoke(main, words)
-    assert done.exit_code == 2
+    done = invoked(*words, code=2)
     assert all(re.match("::(error|warning) file=", line) for line in done.stdout.splitlines())
     assert "there are no bodies" in done.stdout
     suites = ElementTree.parse(out / "junit.xml").getroot()
@@ -198,5 +196,5 @@ def test_the_command_writes_them(tmp_path: Path) -> None:
     page = _Page()
     page.feed((out / "index.html").read_text(encoding="utf-8"))
     assert all((out / link).exists() for link in page.links)
-    again = CliRunner().invoke(main, [*words[:-1], "junit"])
+    again = invoked(*words[:-1], "junit")
     keeps_to_junit(ElementTree.fromstring(again.stdout))

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from batches import QUICK, START, batch, cached, command, files_of, folder_of, outcomes, pendulum, summary
+from conftest import filed
 
 from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
@@ -100,8 +101,7 @@ ASKED = BatchOptions(("json",), (1, 2, 3))
     ids=["the same", "expression", "name", "load", "problems", "all problems", "format", "terms", "angles", "detail"],
 )
 def test_another_description_or_option_is_derived(place: Path, text: str, asked: BatchOptions, kept: bool) -> None:
-    file = place / "in" / "a.yaml"
-    file.write_text(text, encoding="utf-8")
+    file = filed(place / "in" / "a.yaml", text)
     found = FolderStore(place / "out", asked, digests.derivation()).look(Place(str(file), "a"))
     if isinstance(found, Task):  # it is read again, and seen to mean something else
         done = isolated(found, Budget())

@@ -13,12 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 
 from mbsym_cli import beside as module
 from mbsym_cli.beside import Beside, beside, helped
 from mbsym_cli.console import DEFECTS
-from mbsym_cli.main import main
 
 ROOT = Path(__file__).parents[2]
 PENDULUM = ROOT / "systems" / "double-pendulum.yaml"
@@ -121,7 +120,7 @@ def test_leaving_early_ends_the_copy() -> None:
 def test_a_run_with_help_writes_the_same_bytes(tmp_path: Path) -> None:
     """As a process of its own, which has help where there are two cores, and within this one, which has none."""
     alone, helped_ = tmp_path / "alone", tmp_path / "helped"
-    done = CliRunner().invoke(main, ["run", str(PENDULUM), "--quiet", "--out", str(alone)])
+    done = invoked("run", PENDULUM, "--quiet", "--out", alone)
     assert (done.exit_code, done.stderr) == (0, "")
     subprocess.run([sys.executable, "-m", "mbsym_cli", "run", PENDULUM, "--quiet", "--out", helped_], check=True)
     files = sorted(path.relative_to(alone) for path in alone.rglob("*") if path.is_file())

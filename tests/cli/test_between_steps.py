@@ -6,9 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-
-from mbsym_cli.main import main
+from click.testing import Result
+from conftest import filed, invoked
 
 HEAD = (
     "mbsym: 1\nname: one\nbodies:\n"
@@ -18,10 +17,9 @@ HEAD = (
 
 
 def simulated(folder: Path, force: str, *options: str) -> tuple[Result, dict[str, object]]:
-    file = folder / "one.yaml"
-    file.write_text(f"{HEAD}      x: {force}\ninitial: {{x: {{position: 1}}}}\n")
+    file = filed(folder / "one.yaml", f"{HEAD}      x: {force}\ninitial: {{x: {{position: 1}}}}\n")
     options = (*options, "--format", "csv", "--out", str(folder / "out"))
-    done = CliRunner().invoke(main, ["simulate", str(file), "--time", "8", "-v", *options])
+    done = invoked("simulate", file, "--time", "8", "-v", *options)
     written = folder / "out" / "simulation.json"
     return done, json.loads(written.read_text()) if written.exists() else {}
 

@@ -12,12 +12,12 @@ from typing import Any
 import jsonschema
 import mpmath
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import filed, invoked
 
 from mbsym.expressions.message import duration
 from mbsym.numerics.enclosure.enclose import OUT_OF_TIME, Enclosure
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 LINE = (
     "mbsym: 1\nname: one\nbodies:\n"
@@ -27,10 +27,9 @@ OSCILLATOR = LINE + "loads:\n  - potential: x**2/2\ninitial: {x: 1}\n"
 BLOW_UP = LINE + "loads:\n  - potential: -2*x**3\ninitial: {x: {position: 1, velocity: 2}}\n"
 
 
-def simulated(folder: Path, text: str, *options: str) -> Result:
-    file = folder / "one.yaml"
-    file.write_text(text)
-    return CliRunner().invoke(main, ["simulate", str(file), "--out", str(folder / "out"), "-f", "csv", *options])
+def simulated(folder: Path, text: str, *options: str, code: int | None = None) -> Result:
+    file = filed(folder / "one.yaml", text)
+    return invoked("simulate", file, "--out", folder / "out", "-f", "csv", *options, code=code)
 
 
 def rows_of(folder: Path, name: str) -> list[dict[str, str]]:
@@ -45,8 +44,7 @@ def record_of(folder: Path) -> dict[str, Any]:
 
 
 def test_the_truth_is_within_the_radius_as_printed(tmp_path: Path) -> None:
-    done = simulated(tmp_path, OSCILLATOR, "--time", "10", "--samples", "21", "--certify", "1e-20")
-    assert done.exit_code == 0, done.output
+    done = simulated(tmp_path, OSCILLATOR, "--time", "10", "--samples", "21", "--certify", "1e-20", code=0)
     assert "of the exact solution at all 21 rows (proved" in done.output
     rows = rows_of(tmp_path, "enclosure.csv")
     assert len(rows) == 21
@@ -66,24 +64,21 @@ def test_what_cannot_be_proved_is_said(tmp_path: Path) -> None:
     """x = 1/(1 - t)^2: the run breaks down as well, near t = 1."""
     done = simulated(tmp_path, BLOW_UP, "--time", "0.999", "--certify", "1e-6")
     assert done.exit_code in (0, 3)
-    done = simulated(tmp_path, BLOW_UP, "--time", "2", "--certify", "1e-6")
-    assert done.exit_code == 3
+    done = simulated(tmp_path, BLOW_UP, "--time", "2", "--certify", "1e-6", code=3)
     found = record_of(tmp_path)
     assert found["status"] == "partial"
     assert found["certificate"]["reached"] < 1
 
 
 def test_functions_without_a_power_series_are_refused(tmp_path: Path) -> None:
-    done = simulated(tmp_path, OSCILLATOR.replace("x**2/2", "abs(x)"), "--time", "10", "--certify")
-    assert done.exit_code == 2
+    done = simulated(tmp_path, OSCILLATOR.replace("x**2/2", "abs(x)"), "--time", "10", "--certify", code=2)
     assert "abs in the equations has no power series" in done.output or "sign in the equations" in done.output
     assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("width", ["0", "1", "1e-500", "nothing"])
 def test_a_width_that_is_none(tmp_path: Path, width: str) -> None:
-    done = simulated(tmp_path, OSCILLATOR, "--time", "10", f"--certify={width}")
-    assert done.exit_code == 2
+    done = simulated(tmp_path, OSCILLATOR, "--time", "10", f"--certify={width}", code=2)
     assert "--certify: error[" in done.output
     assert not (tmp_path / "out").exists()
 
@@ -124,9 +119,18 @@ def test_the_pace_is_that_of_the_steps_taken() -> None:
 def test_a_certificate_proves_shares_of_a_plan(accuracy: float, tmp_path: Path) -> None:
     """x = cos t, as planned: what is said to be proved at the rows holds there, and is no thousand times too much."""
     done = simulated(
-        tmp_path, OSCILLATOR, "--time", "10", "--samples", "21", "--accuracy", str(accuracy), "--certify", "1e-12"
+        tmp_path,
+        OSCILLATOR,
+        "--time",
+        "10",
+        "--samples",
+        "21",
+        "--accuracy",
+        str(accuracy),
+        "--certify",
+        "1e-12",
+        code=0,
     )
-    assert done.exit_code == 0, done.output
     (bound,) = record_of(tmp_path)["plan"]["bounds"]
     assert "at every row (proved" in done.stdout
     exact = {"x": math.cos, "x_dot": lambda t: -math.sin(t)}[bound["quantity"]]
@@ -137,8 +141,7 @@ def test_a_certificate_proves_shares_of_a_plan(accuracy: float, tmp_path: Path) 
 
 
 def test_what_is_not_certified_is_not_called_proved(tmp_path: Path) -> None:
-    done = simulated(tmp_path, OSCILLATOR, "--time", "10", "--samples", "21", "--accuracy", "1e-6")
-    assert done.exit_code == 0, done.output
+    done = simulated(tmp_path, OSCILLATOR, "--time", "10", "--samples", "21", "--accuracy", "1e-6", code=0)
     assert "at every row (proved" not in done.stdout
     assert "proved_at_rows" not in record_of(tmp_path)["plan"]["bounds"][0]
 
@@ -147,8 +150,7 @@ def test_a_width_that_is_not_reached_is_exit_code_3(tmp_path: Path, monkeypatch:
     """x'' = x from (1, -1): what a ball is wide by grows by 2.4e17 until t = 40, and more bits cost too much here."""
     monkeypatch.setattr("mbsym.studies.simulate.fitting.WORK", 0.08)
     text = LINE + "loads:\n  - potential: -x**2/2\ninitial: {x: {position: 1, velocity: -1}}\n"
-    done = simulated(tmp_path, text, "--time", "40", "--samples", "21", "--certify", "1e-10")
-    assert done.exit_code == 3, done.output
+    done = simulated(tmp_path, text, "--time", "40", "--samples", "21", "--certify", "1e-10", code=3)
     assert "that is wider than the 1e-10 that was asked for: it takes more work than it may" in " ".join(
         done.output.split()
     )
@@ -156,6 +158,5 @@ def test_a_width_that_is_not_reached_is_exit_code_3(tmp_path: Path, monkeypatch:
     assert (found["whole"], found["narrow"], found["asked"]) == (True, False, 1e-10)
     assert found["known"] > 1e-10
     monkeypatch.undo()
-    done = simulated(tmp_path, text, "--time", "40", "--samples", "21", "--certify", "1e-10")
-    assert done.exit_code == 0, done.output
+    done = simulated(tmp_path, text, "--time", "40", "--samples", "21", "--certify", "1e-10", code=0)
     assert record_of(tmp_path)["certificate"]["narrow"] is True

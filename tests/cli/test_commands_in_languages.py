@@ -7,12 +7,10 @@ import re
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 
 from mbsym.model.system import LANGUAGES
 from mbsym_cli.console import speaking
-from mbsym_cli.main import main
 
 
 def description(language: str) -> str:
@@ -37,7 +35,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def said(*words: str) -> str:
-    done = CliRunner().invoke(main, list(words))
+    done = invoked(*words)
     assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
     return done.output
 
@@ -46,7 +44,7 @@ def said(*words: str) -> str:
 def test_programs_read_the_same_complaints_from_check_and_batch(form: str, folder: Path) -> None:
     """Batches wrote them in the language of the description, checks in English; people read theirs all the same."""
     wrong = ("in/bad.yaml", "--output-format", form)
-    check, batch = (CliRunner().invoke(main, [*x, *wrong]).stdout for x in (("check",), ("batch", "--out", "out")))
+    check, batch = (invoked(*x, *wrong).stdout for x in (("check",), ("batch", "--out", "out")))
     assert check == batch
     (row,) = json.loads(Path("out/summary.json").read_text(encoding="utf-8"))["systems"]
     assert row["complaints"][0]["message"].startswith("unknown key")
@@ -65,7 +63,7 @@ def test_a_new_description_is_in_its_language(language: str, folder: Path) -> No
     said("new", "crane", "--like", "pendulum", "--language", language)
     text = (folder / "crane.yaml").read_text(encoding="utf-8")
     assert f"\nlanguage: {language}\n" in text
-    assert CliRunner().invoke(main, ["check", "crane.yaml"]).exit_code == 0
+    assert invoked("check", "crane.yaml").exit_code == 0
 
 
 def test_which_language_several_files_speak(folder: Path) -> None:
@@ -83,7 +81,7 @@ def test_a_robot_without_joints_is_told_what_helps(folder: Path) -> None:
     text = f'<robot name="quad"><link name="base"><inertial><mass value="1"/>{inertia}</inertial></link></robot>'
     Path("quad.urdf").write_text(text, encoding="utf-8")
     assert "hint: --floating" in said("convert", "quad.urdf")
-    assert CliRunner().invoke(main, ["convert", "quad.urdf", "--floating"]).exit_code == 0
+    assert invoked("convert", "quad.urdf", "--floating").exit_code == 0
 
 
 @pytest.mark.parametrize(
@@ -99,8 +97,7 @@ def test_a_robot_without_joints_is_told_what_helps(folder: Path) -> None:
 )
 def test_json_prints_what_the_file_says(words: tuple[str, ...], file: str, folder: Path) -> None:
     """In English, though the description is in Russian."""
-    done = CliRunner().invoke(main, [*words, "--json", "--out", "out"])
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, "--json", "--out", "out", code=0)
     assert done.stdout == (folder / "out" / file).read_text(encoding="utf-8")
     assert json.loads(done.stdout)
     assert not re.search("[а-яё]", done.stdout)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, filed
 from numerics.test_methods import POLE
 from test_simulate import DOUBLE, mbsym, summary, table, written
 
@@ -237,8 +237,7 @@ def test_everything_wrong_is_said_at_once(earlier: Path, tmp_path: Path) -> None
 
 
 def test_nothing_goes_on_after_a_pole(tmp_path: Path) -> None:
-    path = tmp_path / "pole.yaml"
-    path.write_text(POLE, encoding="utf-8")
+    path = filed(tmp_path / "pole.yaml", POLE)
     assert mbsym(path, "--time", 2, "-f", "csv", "--out", tmp_path / "out").exit_code == 3
     done = mbsym(path, "--time", 3, "-f", "csv", "--continue", tmp_path / "out" / "simulation.json", "--out", tmp_path)
     assert done.exit_code == 2
@@ -264,8 +263,7 @@ def test_a_run_that_ended_stiff_goes_on_by_its_last_method(tmp_path: Path) -> No
 
     An explicit method would take 1e5 steps and more for a unit of time there.
     """
-    path = tmp_path / "pol.yaml"
-    path.write_text(VAN_DER_POL, encoding="utf-8")
+    path = filed(tmp_path / "pol.yaml", VAN_DER_POL)
     limit = ("-f", "csv", "--no-estimate", "--step-limit", "20000", "--out", tmp_path)
     assert mbsym(path, "--time", 10000, "--every", 1000, *limit).exit_code == 0
     first = summary(tmp_path)

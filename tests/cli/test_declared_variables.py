@@ -9,22 +9,19 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED, reference
-
-from mbsym_cli.main import main
+from click.testing import Result
+from conftest import SHIPPED, invoked, reference
 
 SATELLITE = SHIPPED / "gravity-gradient-quaternion.yaml"
 
 
-def called(*arguments: object) -> Result:
-    return CliRunner().invoke(main, ["simulate", *map(str, arguments)])
+def called(*arguments: object, code: int | None = None) -> Result:
+    return invoked("simulate", *arguments, code=code)
 
 
 def test_columns_and_words_are_those_of_the_description(tmp_path: Path) -> None:
     how = ("--time", 300, "--samples", 31, "-f", "csv,svg", "--event", "e1 = e2", "-v", "--out", tmp_path)
-    result = called(SATELLITE, *how)
-    assert result.exit_code == 0, result.output
+    result = called(SATELLITE, *how, code=0)
     with (tmp_path / "trajectory.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0])[:8] == ["t", "e0", "e1", "e2", "e3", "p", "q", "r"]
@@ -41,8 +38,7 @@ def test_columns_and_words_are_those_of_the_description(tmp_path: Path) -> None:
 
 def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> None:
     how = ("--variables", "coordinates", "--time", 300, "--samples", 31, "-f", "csv", "-v", "--out", tmp_path)
-    result = called(SATELLITE, *how)
-    assert result.exit_code == 0, result.output
+    result = called(SATELLITE, *how, code=0)
     header = (tmp_path / "trajectory.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
     assert header[:4] == ["t", "psi", "theta", "phi"]
     assert {"e0", "p"} <= set(header)
@@ -56,8 +52,7 @@ def test_a_model_is_the_same_in_both_kinds_of_variables(model: tuple[str, str], 
     for kind in ("declared", "coordinates"):
         where = tmp_path / kind
         how = ("--variables", kind, "--time", 300, "--samples", 4, "-f", "csv", "--tolerance", 1e-12, *model)
-        result = called(SATELLITE, *how, "--out", where)
-        assert result.exit_code == 0, result.output
+        called(SATELLITE, *how, "--out", where, code=0)
         rows.append(list(csv.DictReader((where / "trajectory.csv").read_text(encoding="utf-8").splitlines()))[-1])
     for name in ("e0", "e1", "e2", "e3", "p", "q", "r"):
         assert float(rows[0][name]) == pytest.approx(float(rows[1][name]), abs=1e-8)
@@ -73,8 +68,7 @@ def test_a_model_is_the_same_in_both_kinds_of_variables(model: tuple[str, str], 
     ],
 )
 def test_what_knows_declared_variables_speaks_them(words: tuple[str, ...], table: str, tmp_path: Path) -> None:
-    result = called(SATELLITE, "--time", 10, "--samples", 11, "-f", "csv", *words, "--out", tmp_path)
-    assert result.exit_code == 0, result.output
+    called(SATELLITE, "--time", 10, "--samples", 11, "-f", "csv", *words, "--out", tmp_path, code=0)
     head = (tmp_path / table).read_text(encoding="utf-8").splitlines()[0]
     assert "e0" in head
     assert "psi" not in head
@@ -82,8 +76,7 @@ def test_what_knows_declared_variables_speaks_them(words: tuple[str, ...], table
 
 def test_a_speed_that_is_no_state_alone_is_refused(tmp_path: Path) -> None:
     """The initial velocities are those of angles: one speed besides is no state."""
-    result = called(SATELLITE, "--time", 10, "--vary", "p=0.01:0.02:3", "--out", tmp_path / "out")
-    assert result.exit_code == 2
+    result = called(SATELLITE, "--time", 10, "--vary", "p=0.01:0.02:3", "--out", tmp_path / "out", code=2)
     assert "no motion begins with p = 0.01: no value for q" in result.stderr
 
 
@@ -99,8 +92,7 @@ def test_a_speed_that_is_no_state_alone_is_refused(tmp_path: Path) -> None:
 def test_what_goes_with_coordinates_only_is_refused_by_name(
     option: str, words: tuple[str, ...], tmp_path: Path
 ) -> None:
-    result = called(SATELLITE, "--time", 10, *words, "--out", tmp_path / "out")
-    assert result.exit_code == 2, result.output
+    result = called(SATELLITE, "--time", 10, *words, "--out", tmp_path / "out", code=2)
     assert f"{option}: error[" in result.stderr
     assert "this system has speeds" in result.stderr or "at their lengths" in result.stderr
     assert not (tmp_path / "out").exists()
@@ -115,8 +107,7 @@ def test_what_goes_with_coordinates_only_is_refused_by_name(
     ],
 )
 def test_what_cannot_be_meant_is_complained_about(words: tuple[object, ...], told: str, tmp_path: Path) -> None:
-    result = called(words[0], "--time", 1, *words[1:], "--out", tmp_path / "out")
-    assert result.exit_code == 2, result.output
+    result = called(words[0], "--time", 1, *words[1:], "--out", tmp_path / "out", code=2)
     assert told in result.stderr
 
 
@@ -130,8 +121,7 @@ def test_a_few_motions_of_a_grid_are_drawn_beside_each_other(tmp_path: Path) -> 
     text = re.sub("^values: .*$", f"values: {{{values}}}", text, flags=re.MULTILINE)
     (tmp_path / "table-1.yaml").write_text(text.replace("atan(4/3)", "atan(sqrt(1 - 1/10**6)*1000)"), encoding="utf-8")
     words = ("--time", "1/2", "--samples", 51, "--vary", "lx=30:90:3", "-f", "csv,svg", "--out", tmp_path / "out")
-    result = called(tmp_path / "table-1.yaml", *words)
-    assert result.exit_code == 0, result.output
+    called(tmp_path / "table-1.yaml", *words, code=0)
     pictures = (tmp_path / "out" / "phase-planes-2.svg").read_text(encoding="utf-8")
     assert all(f"$l_{{x}}$ = {value} -->" in pictures for value in (30, 60, 90))
     with (tmp_path / "out" / "members.csv").open(encoding="utf-8") as file:

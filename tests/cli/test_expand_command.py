@@ -7,16 +7,15 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 SLOW = "systems/satellite-with-damper-slow.yaml"
 
 
-def run(*words):
-    return CliRunner().invoke(main, ["expand", *words])
+def run(*words, code: int | None = None):
+    return invoked("expand", *words, code=code)
 
 
 @pytest.fixture(autouse=True)
@@ -25,8 +24,7 @@ def _at_the_root(monkeypatch, request):
 
 
 def test_the_damper_as_json_and_as_text():
-    done = run(SLOW, "--order", "3", "--json")
-    assert done.exit_code == 0
+    done = run(SLOW, "--order", "3", "--json", code=0)
     data = json.loads(done.stdout)
     jsonschema.validate(data, schema("expansion"))
     assert [one["residual"] for one in data["manifold"]] == [4, 4]
@@ -59,8 +57,7 @@ def test_bad_input_is_complained_about(words, told):
 def test_a_system_without_fast_variables(tmp_path):
     text = Path("systems/gyrostat-poisson.yaml").read_text(encoding="utf-8") + "\nsmall parameter: epsilon\n"
     (tmp_path / "slow.yaml").write_text(text, encoding="utf-8")
-    done = run(str(tmp_path / "slow.yaml"))
-    assert done.exit_code == 1
+    done = run(str(tmp_path / "slow.yaml"), code=1)
     assert "no variable is fast" in done.stderr
 
 
@@ -68,8 +65,7 @@ def test_the_map_gives_the_range_that_the_reduced_condition_misjudges(tmp_path):
     """lambda = 1/1000, kappa = omega = 1 keep the reduced condition; divergence where eps^2 > lambda kappa/omega^3."""
     numbers = {"s": "1", "eta": "1/1000", "kappa": "1", "omega": "1", "rho": "0", "delta": "2/5", "A": "1", "b0": "1"}
     settings = [word for name, value in numbers.items() for word in ("--set", f"{name}={value}")]
-    done = CliRunner().invoke(main, ["map", SLOW, "--x", "eps=0:1/2", *settings, "--out", str(tmp_path)])
-    assert done.exit_code == 0
+    done = invoked("map", SLOW, "--x", "eps=0:1/2", *settings, "--out", tmp_path, code=0)
     told = " ".join(done.stdout.split())
     assert "at 0.0316227766 (exactly: a root of a polynomial of degree 2" in told
     assert "unstable: divergence, 1 root to the right" in told

@@ -16,11 +16,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 from mbsym_cli import files
 from mbsym_cli.files import MANIFEST, deliver, delivered, folder_for, obstacle, safe_name
-from mbsym_cli.main import main
 
 PENDULUM = Path(__file__).parents[2] / "systems" / "simple-pendulum.yaml"
 NAMES = ("model.c", "model.h", "report.tex")
@@ -274,8 +273,7 @@ def test_a_manifest_that_cannot_be_read_is_none(manifest: str, tmp_path: Path) -
 
 
 def test_a_manifest_cannot_name_files_elsewhere(tmp_path: Path) -> None:
-    victim = tmp_path / "victim"
-    victim.write_text("mine")
+    victim = filed(tmp_path / "victim", "mine")
     digest = hashlib.sha256(b"mine").hexdigest()
     out = tmp_path / "out"
     out.mkdir()
@@ -287,8 +285,7 @@ def test_a_manifest_cannot_name_files_elsewhere(tmp_path: Path) -> None:
 
 
 def test_links_are_replaced_not_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    victim = tmp_path / "victim"
-    victim.write_text("mine")
+    victim = filed(tmp_path / "victim", "mine")
     out = tmp_path / "out"
     out.mkdir()
     (out / "model.c").symlink_to(victim)
@@ -382,17 +379,13 @@ def test_whatever_a_description_is_called_its_reports_stay_where_they_belong(
     for name in NAMES_OF_FILES:
         (work / name).write_text(PENDULUM.read_text(encoding="utf-8"), encoding="utf-8")
     for out in ([], ["--out", "elsewhere"]):
-        done = CliRunner().invoke(main, ["run", *NAMES_OF_FILES, "-f", "json", "-p", "1", "-q", *out])
-        assert done.exit_code == 0, done.output
+        invoked("run", *NAMES_OF_FILES, "-f", "json", "-p", "1", "-q", *out, code=0)
         base = work / (out[1] if out else "reports")
         folders = [path for path in base.iterdir() if path.is_dir()]
         assert len(folders) == len(NAMES_OF_FILES)
         assert all((folder / "results.json").exists() for folder in folders)
     for name in NAMES_OF_FILES[:3]:
-        done = CliRunner().invoke(
-            main, ["simulate", name, "-s", "theta=1", "-t", "0.1", "-f", "csv", "--no-estimate", "-q"]
-        )
-        assert done.exit_code == 0, done.output
+        invoked("simulate", name, "-s", "theta=1", "-t", "0.1", "-f", "csv", "--no-estimate", "-q", code=0)
     written = {path for path in tmp_path.rglob("*") if path.suffix in (".json", ".csv")}
     assert all(path.is_relative_to(work / "reports") or path.is_relative_to(work / "elsewhere") for path in written)
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
@@ -405,8 +398,7 @@ def test_a_planted_link_is_not_followed(command: list[str], tmp_path: Path, monk
     victim.mkdir()
     (tmp_path / "reports").mkdir()
     (tmp_path / "reports" / "simple-pendulum").symlink_to(victim)
-    done = CliRunner().invoke(main, [*command, str(PENDULUM)])
-    assert done.exit_code == 1
+    done = invoked(*command, PENDULUM, code=1)
     assert "is a link that leads out of reports" in done.stderr
     assert not list(victim.iterdir())
 

@@ -9,26 +9,22 @@ from pathlib import Path
 
 import pytest
 import sympy
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, STATEMENTS, filed, invoked
 
 from mbsym import load, loads
 from mbsym.problems.stability.verdict import undecided
 from mbsym.problems.stability.words import Because, Word
 from mbsym.report.sections.summary import _part
 from mbsym.report.targets import TARGETS
-from mbsym_cli.main import main
 
 PENDULUM = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
 
 
 def told(tmp_path: Path, text: str, *words: str) -> list[str]:
     """The lines below the title, each whole."""
-    file = tmp_path / "system.yaml"
-    file.write_text(text, encoding="utf-8")
+    file = filed(tmp_path / "system.yaml", text)
     command = ["run", str(file), "--format", "json", "--out", str(tmp_path / "out"), *words]
-    done = CliRunner().invoke(main, command, env={"COLUMNS": "1000"})
-    assert done.exit_code == 0, done.output
+    done = invoked(*command, env={"COLUMNS": "1000"}, code=0)
     _, *lines = done.stdout.splitlines()
     return [re.sub(" {2,}", "  ", line.strip()) for line in lines]
 
@@ -93,14 +89,14 @@ def test_under_constraints_equations_have_multipliers_and_the_constraints_beside
     (line,) = [x for x in told(tmp_path, (SHIPPED / "four-bar.yaml").read_text(encoding="utf-8")) if "longest" in x]
     assert re.fullmatch(r"Equations  3, the longest with \d+ terms \(mbsym show \S+/system.yaml equations\)", line)
     command = line.partition("(mbsym ")[2].removesuffix(")").split()
-    assert len(CliRunner().invoke(main, command).stdout.splitlines()) > 3
+    assert len(invoked(*command).stdout.splitlines()) > 3
 
 
 def test_a_system_given_by_its_matrices_has_equations_and_inputs_have_names(tmp_path: Path) -> None:
     """M q'' + (D + G) q' + (K + N) q = B u of G = [[0, g], [-g, 0]], K = diag(-k1, -k2)."""
     lines = told(tmp_path, (SHIPPED / "gyroscopic-pair.yaml").read_text(encoding="utf-8"))
     assert lines[1:3] == ["Equations  x'' + g y' - k1 x = 0", "y'' - g x' - k2 y = 0"]
-    shown = CliRunner().invoke(main, ["show", str(SHIPPED / "gyroscopic-pair.yaml"), "equations"])
+    shown = invoked("show", SHIPPED / "gyroscopic-pair.yaml", "equations")
     assert shown.stdout.splitlines() == ["x'' + g y' - k1 x = 0", "y'' - g x' - k2 y = 0"]
     (line,) = [x for x in told(tmp_path, (SHIPPED / "cart-pole.yaml").read_text(encoding="utf-8")) if "inputs:" in x]
     assert line == "Coordinates  2: p, theta; L does not contain p; inputs: F"
@@ -144,7 +140,7 @@ def test_what_equations_in_singular_angles_do_not_say_of_the_motion_is_told_with
 
     With rotation axes 3, 1, 3 two angles turn about one line there, and the equations by themselves leave only y = 0.
     """
-    lines = told(tmp_path, (CASES / "staude2.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "staude2.yaml").read_text(encoding="utf-8"))
     assert "Motion  psi = W t, th = phi = 0 satisfies the equations of motion if and only if y = 0, x = 0" in lines
     assert any(x.startswith("Stability  provided the conditions of the motion (problem 4) hold: ") for x in lines)
 
@@ -183,7 +179,7 @@ def test_a_quotient_before_a_product_is_not_read_as_a_divisor(tmp_path: Path) ->
     assert any("y = v t/r" in line for line in lines)
     file = SHIPPED / "cart-pendulum.yaml"
     command = ["run", str(file), "-v", "--problems", "3", "--format", "json", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, command, env={"COLUMNS": "80"})
+    done = invoked(*command, env={"COLUMNS": "80"})
     drawn = [line for line in done.stdout.splitlines() if line.endswith(" ]")]
     entries = [line for line in done.stdout.splitlines() if "M[1" in line]
     assert drawn or entries
@@ -205,9 +201,6 @@ def test_each_group_of_coordinates_has_its_cases_in_order(tmp_path: Path) -> Non
     assert "otherwise unstable (Lyapunov's first method) if A - B < 0" in lines
 
 
-CASES = Path(__file__).parents[1] / "cases" / "statements"
-
-
 def test_no_case_of_stability_stands_beside_a_verdict_of_instability(tmp_path: Path) -> None:
     """K = [[2 a, -1, b - a], [-1, b - 2, 1/2 - b - a], [b - a, 1/2 - b - a, b + 2]] is nowhere positive definite.
 
@@ -218,7 +211,7 @@ def test_no_case_of_stability_stands_beside_a_verdict_of_instability(tmp_path: P
         d = 0.5 - b - a
         minor = 2 * a * (b * b - 4 - d * d) - (b + 2) - 2 * d * (b - a) - (b - 2) * (b - a) ** 2
         assert 2 * a * (b - 2) <= 1 or minor < 0
-    lines = told(tmp_path, (CASES / "complete-dissipation.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "complete-dissipation.yaml").read_text(encoding="utf-8"))
     at = next(k for k, line in enumerate(lines) if line.startswith("Stability"))
     assert lines[at] == "Stability  unstable but for border cases (Kelvin-Chetaev)"
     assert lines[at + 1].startswith("Self-check")
@@ -242,7 +235,7 @@ def test_what_is_decided_case_by_case_is_not_called_undecided() -> None:
 
 def test_conditions_have_no_needless_minus_and_none_that_another_implies(tmp_path: Path) -> None:
     """van der Pol at rest: x'' - mu x' + x = 0 about x = 0.  (N - W^2) (B - C) > 0 says that N is not W^2."""
-    lines = told(tmp_path, (CASES / "van_der_pol_at_rest.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "van_der_pol_at_rest.yaml").read_text(encoding="utf-8"))
     assert "asymptotically stable (Lyapunov's first method) if mu < 0" in lines
     assert "otherwise unstable (Lyapunov's first method) if mu > 0" in lines
     lines = told(tmp_path, (SHIPPED / "clebsch.yaml").read_text(encoding="utf-8"))
@@ -256,13 +249,13 @@ def test_only_does_not_belong_to_if(tmp_path: Path) -> None:
     """
     lines = told(tmp_path, (SHIPPED / "ziegler.yaml").read_text(encoding="utf-8"))
     assert any(line.startswith("stable in first approximation only, if 7 k - 2 l P > 0, ") for line in lines)
-    lines = told(tmp_path, (CASES / "lift.yaml").read_text(encoding="utf-8"))
+    lines = told(tmp_path, (STATEMENTS / "lift.yaml").read_text(encoding="utf-8"))
     assert "stable (Lagrange-Dirichlet) if g + a > 0" in lines
 
 
 def test_a_condition_that_varies_has_to_hold_all_the_time(tmp_path: Path) -> None:
     """The rod's weight turns the wheels by m g e cos(p)/10, and p = v t/r: there is no such motion but with v = 0."""
-    text = (CASES.parent / "constraints" / "coupling-rod.yaml").read_text(encoding="utf-8")
+    text = (STATEMENTS.parent / "constraints" / "coupling-rod.yaml").read_text(encoding="utf-8")
     (line,) = [x for x in told(tmp_path, text, "--problems", "1-4") if x.startswith("Motion")]
     assert line.endswith(" satisfies the equations of motion if and only if, at all times, cos(p) = 0")
     text = (SHIPPED / "orbital-gyrostat.yaml").read_text(encoding="utf-8")
@@ -278,7 +271,7 @@ def test_a_name_in_a_denominator_has_no_brackets(tmp_path: Path) -> None:
 
 def test_at_eighty_columns_text_hangs_beside_its_name_and_short_conditions_are_whole(tmp_path: Path) -> None:
     command = ["run", str(SHIPPED / "satellite.yaml"), "--format", "json", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, command, env={"COLUMNS": "80"})
+    done = invoked(*command, env={"COLUMNS": "80"})
     first, *lines = done.stdout.splitlines()
     assert first.startswith("Satellite with a gravitational stabilizer")
     assert not [line for line in lines if len(line) > 80 and str(tmp_path) not in line]
@@ -362,8 +355,7 @@ def test_set_replaces_a_value(tmp_path: Path) -> None:
 )
 def test_a_value_that_cannot_be_is_refused(tmp_path: Path, command: str, setting: str, code: str) -> None:
     out = ["--out", str(tmp_path / "out")] if command == "run" else []
-    done = CliRunner().invoke(main, [command, str(SHIPPED / "bead-on-hoop.yaml"), "-s", setting, *out])
-    assert done.exit_code == 2
+    done = invoked(command, SHIPPED / "bead-on-hoop.yaml", "-s", setting, *out, code=2)
     assert f"--set: error[{code}]" in done.output
     assert not (tmp_path / "out").exists()
 
@@ -422,15 +414,15 @@ def test_the_letters_of_conditions_are_explained_beside_them(tmp_path: Path) -> 
 
 def test_what_dependent_rows_presume_stands_at_the_verdict(tmp_path: Path) -> None:
     """x = 0 and x + e z = 0 hold z where e != 0: then U = -y^2/2 alone is felt; else z'' = z grows."""
-    path = tmp_path / "a.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "a.yaml",
         "mbsym: 1\nname: rows\nparameters: {e: {value: 0, sign: real}}\n"
         "bodies: [{name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}]\n"
         "loads: [{potential: y**2/2 - z**2/2}]\n"
-        "constraints:\n  - relation: x = 0\n  - relation: x + e*z = 0\nmotion: {}\n"
+        "constraints:\n  - relation: x = 0\n  - relation: x + e*z = 0\nmotion: {}\n",
     )
     asked = ["run", str(path), "-p", "5,6", "-v", "--format", "json", "--out", str(tmp_path / "out")]
-    told = " ".join(CliRunner().invoke(main, asked).output.split())
+    told = " ".join(invoked(*asked).output.split())
     assert "Stability where e != 0: stable (Lagrange-Dirichlet)" in told
     assert "Verdict, where e != 0: stable (Lagrange-Dirichlet)" in told
 

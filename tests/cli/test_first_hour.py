@@ -11,20 +11,19 @@ import time
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import SHIPPED, filed, invoked, system_of
 
 from mbsym.analysis import Analysis
 from mbsym.source import read
 from mbsym.source.examples import example_like, example_names, example_text
 from mbsym.source.starter import JOINTS, NewBody, starter
 from mbsym_cli import new
-from mbsym_cli.main import COMMANDS, GROUPS, main
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
+from mbsym_cli.main import COMMANDS, GROUPS
 
 
-def command(*words: str, answers: str | None = None) -> Result:
-    return CliRunner().invoke(main, list(words), input=answers)
+def command(*words: str, code: int | None = None, answers: str | None = None) -> Result:
+    return invoked(*words, input=answers, code=code)
 
 
 # --- the list of commands ---------------------------------------------------------------------------------------------
@@ -60,8 +59,7 @@ def test_a_body_on_any_joint_runs(joint: str) -> None:
 def test_what_never_turns_has_a_mass_alone() -> None:
     """No moment of a cart is in (m1 + m2) x'' + ..., and none is asked for; of a slider on its pole there is."""
     text = starter("Cart", [NewBody("cart", None, "slider"), NewBody("pole", "cart"), NewBody("tip", "pole", "slider")])
-    system, _ = read(text, "cart.yaml")
-    assert system is not None
+    system = system_of(text, "cart.yaml")
     given = {one.name for one in system.parameters}
     assert {"l1", "J11", "d1"}.isdisjoint(given)
     assert {"m1", "m2", "d2", "l2", "J23", "m3", "l3", "J33"} <= given
@@ -87,8 +85,7 @@ def test_new_where_nobody_answers_takes_the_pendulum(tmp_path: Path, monkeypatch
     assert not complaints.items
     assert system.name == "My crane"
     assert "# " in text
-    again = command("new", "my-crane")
-    assert again.exit_code == 2
+    again = command("new", "my-crane", code=2)
     assert "there already" in again.stderr
     assert Path("my-crane.yaml").read_text(encoding="utf-8") == text
 
@@ -103,11 +100,9 @@ def test_what_new_says_to_run_can_be_pasted(tmp_path: Path, monkeypatch: pytest.
 def test_new_asks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(new, "_answers", lambda: True)  # click's own input stands for a terminal
-    done = command("new", "crane", answers="\n3\ncart\nslider\ncart\nhook\ncart\ncardan\nload\n0\nfree\ny\n")
-    assert done.exit_code == 0, done.output
+    done = command("new", "crane", answers="\n3\ncart\nslider\ncart\nhook\ncart\ncardan\nload\n0\nfree\ny\n", code=0)
     assert "another body is called so" in done.stderr
-    system, _ = read(Path("crane.yaml").read_text(encoding="utf-8"), "crane.yaml")
-    assert system is not None
+    system = system_of(Path("crane.yaml").read_text(encoding="utf-8"), "crane.yaml")
     assert [(body.name, body.attached_to) for body in system.bodies] == [("cart", "0"), ("hook", "cart"), ("load", "0")]
     assert len(system.coordinates) == 1 + 2 + 6
 
@@ -121,8 +116,7 @@ def test_like_knows_what_is_meant(word: str, name: str) -> None:
 
 def test_like_guesses_at_slips(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    done = command("new", "x", "--like", "satelite")
-    assert done.exit_code == 2
+    done = command("new", "x", "--like", "satelite", code=2)
     assert "did you mean 'satellite'?" in done.stderr
     assert not list(tmp_path.iterdir())
 
@@ -131,13 +125,13 @@ def test_like_guesses_at_slips(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_examples_are_the_shipped_systems(tmp_path: Path) -> None:
-    assert set(example_names()) == {path.stem for path in SYSTEMS.glob("*.yaml")}
+    assert set(example_names()) == {path.stem for path in SHIPPED.glob("*.yaml")}
     listed = command("examples").stdout
     assert all(name in listed for name in example_names())
     assert command("examples", "--all", "--out", str(tmp_path / "mine")).exit_code == 0
     for name in example_names():
         text = (tmp_path / "mine" / f"{name}.yaml").read_text(encoding="utf-8")
-        assert text == example_text(name) == (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+        assert text == example_text(name) == (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
     assert command("examples", "ziegler", "--out", str(tmp_path / "mine")).exit_code == 2  # nothing is replaced
     assert command("examples", "zigler").exit_code == 2
 
@@ -170,8 +164,7 @@ def test_watch_derives_again_on_save(tmp_path: Path) -> None:
             file.write_text(good.replace("[theta]", "[thetta]"), encoding="utf-8")
             _wait(log, "waiting for changes", 2)
             assert "unknown name" in log.read_text()
-            other = tmp_path / "other"
-            other.write_text(good.replace("Simple pendulum", "Renamed pendulum"), encoding="utf-8")
+            other = filed(tmp_path / "other", good.replace("Simple pendulum", "Renamed pendulum"))
             other.replace(file)
             _wait(log, "waiting for changes", 3)
             assert "Renamed pendulum" in (tmp_path / "out" / "results.json").read_text()

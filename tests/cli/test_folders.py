@@ -5,12 +5,9 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
-
-from mbsym_cli.main import main
+from conftest import invoked
 
 DESCRIPTION = """
 mbsym: 1
@@ -32,10 +29,6 @@ OTHERS = {
 }
 
 
-def mbsym(*words: Any) -> Result:
-    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
-
-
 def filled(folder: Path) -> Path:
     for name, text in OTHERS.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -49,16 +42,14 @@ def test_other_files_of_a_project_are_passed_over(command: str, tmp_path: Path) 
     os.mkfifo(folder / "pipe.yaml")
     (folder / "loop.yaml").symlink_to("loop.yaml")
     out = ("--brief", "--out", tmp_path / "out") if command == "run" else ()
-    done = mbsym(command, folder, *out)
-    assert done.exit_code == 0, done.output
+    done = invoked(command, folder, *out, code=0)
     assert "oscillator.yaml" in done.stdout
     assert not [name for name in [*OTHERS, "pipe.yaml", "loop.yaml"] if name in done.output]
 
 
 @pytest.mark.parametrize("command", ["check", "run"])
 def test_a_folder_of_other_files_alone_is_complained_about(command: str, tmp_path: Path) -> None:
-    done = mbsym(command, filled(tmp_path))
-    assert done.exit_code == 2
+    done = invoked(command, filled(tmp_path), code=2)
     assert f"there are no descriptions here ({len(OTHERS)} other files were passed over)" in done.stderr
 
 
@@ -70,16 +61,14 @@ def test_a_folder_of_other_files_alone_is_complained_about(command: str, tmp_pat
     ],
 )
 def test_another_file_that_is_named_is_read_as_a_description(name: str, complaint: str, tmp_path: Path) -> None:
-    done = mbsym("check", filled(tmp_path) / name)
-    assert done.exit_code == 2
+    done = invoked("check", filled(tmp_path) / name, code=2)
     assert complaint in done.stderr
 
 
 def test_a_broken_description_in_a_folder_is_not_passed_over(tmp_path: Path) -> None:
     (tmp_path / "good.yaml").write_text(DESCRIPTION, encoding="utf-8")
     (tmp_path / "bad.yaml").write_text(DESCRIPTION.replace("coordinates: [x]}", "coordinates: [x]"), encoding="utf-8")
-    done = mbsym("check", tmp_path)
-    assert done.exit_code == 2
+    done = invoked("check", tmp_path, code=2)
     assert "bad.yaml" in done.stderr
     assert "good.yaml: ok" in done.stdout
 
@@ -96,17 +85,15 @@ def test_a_description_without_its_first_line_is_not_passed_over(first: str, hin
     """In a folder of descriptions a misspelt key must not end as a check that found nothing."""
     (tmp_path / "good.yaml").write_text(DESCRIPTION, encoding="utf-8")
     (tmp_path / "lost.yaml").write_text(DESCRIPTION.replace("mbsym: 1", first), encoding="utf-8")
-    done = mbsym("check", tmp_path)
-    assert done.exit_code == 2
+    done = invoked("check", tmp_path, code=2)
     assert hint in done.stderr
     assert "good.yaml: ok" in done.stdout
 
 
 def test_skip_others_passes_over_no_file_that_cannot_be_read(tmp_path: Path) -> None:
     others = filled(tmp_path)
-    assert mbsym("check", "--skip-others", others / "docker-compose.yaml").exit_code == 0
-    done = mbsym("check", "--skip-others", tmp_path / "misspelled.yaml")
-    assert done.exit_code == 2
+    assert invoked("check", "--skip-others", others / "docker-compose.yaml").exit_code == 0
+    done = invoked("check", "--skip-others", tmp_path / "misspelled.yaml", code=2)
     assert "misspelled.yaml: error[unreadable]" in done.stderr
-    log = mbsym("check", "--skip-others", "--output-format", "sarif", others / "docker-compose.yaml")
+    log = invoked("check", "--skip-others", "--output-format", "sarif", others / "docker-compose.yaml")
     assert json.loads(log.stdout)["runs"][0]["results"] == []

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import click
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 
 import mbsym_cli
 from mbsym_cli.main import COMMANDS, main
@@ -46,22 +45,17 @@ FILES = [
 ]
 
 
-def run(*words: object) -> Result:
-    return CliRunner().invoke(main, [*map(str, words)])
-
-
 @pytest.mark.parametrize(("command", "system", "words", "name"), FOLDERS)
 def test_a_file_of_somebody_else_stays(command: str, system: str, words: list[str], name: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
     asked = [command, SHIPPED / f"{system}.yaml", *words, "-o", out]
     if "*" in name:
-        assert run(*asked).exit_code == 0
+        assert invoked(*asked).exit_code == 0
         name = next(out.glob(name)).name
         shutil.rmtree(out)
     out.mkdir()
     (out / name).write_text("mine")
-    done = run(*asked)
-    assert done.exit_code == 1, done.output
+    done = invoked(*asked, code=1)
     assert f"{name}: it is there already and mbsym did not write it; --force replaces it" in " ".join(
         done.stderr.split()
     )
@@ -72,14 +66,14 @@ def test_a_file_of_somebody_else_stays(command: str, system: str, words: list[st
 def test_by_force_it_is_replaced_and_from_then_on_it_is_ours(tmp_path: Path) -> None:
     asked = ["run", SHIPPED / "simple-pendulum.yaml", "-f", "json", "-o", tmp_path]
     (tmp_path / "results.json").write_text("mine")
-    assert run(*asked, "--force").exit_code == 0
+    assert invoked(*asked, "--force").exit_code == 0
     assert (tmp_path / "results.json").read_text() != "mine"
-    assert run(*asked).exit_code == 0
+    assert invoked(*asked).exit_code == 0
     (tmp_path / "report.tex").write_text("mine")
-    assert run(*asked).exit_code == 0  # it is not in the way
-    assert run(*asked[:2], "-f", "latex", "-o", tmp_path).exit_code == 1
+    assert invoked(*asked).exit_code == 0  # it is not in the way
+    assert invoked(*asked[:2], "-f", "latex", "-o", tmp_path).exit_code == 1
     (tmp_path / ".mbsym.json").unlink()
-    assert run(*asked).exit_code == 0  # what holds the same already loses nothing
+    assert invoked(*asked).exit_code == 0  # what holds the same already loses nothing
 
 
 def test_a_batch_keeps_to_it_too(tmp_path: Path) -> None:
@@ -88,13 +82,12 @@ def test_a_batch_keeps_to_it_too(tmp_path: Path) -> None:
     out.mkdir()
     shutil.copy(SHIPPED / "simple-pendulum.yaml", work)
     (out / "summary.json").write_text("mine")
-    done = run("batch", work, "-o", out, "-f", "json", "-j", "1")
-    assert done.exit_code == 1
+    done = invoked("batch", work, "-o", out, "-f", "json", "-j", "1", code=1)
     assert "--force replaces it" in done.stderr
     assert (out / "summary.json").read_text() == "mine"
     (out / "summary.json").unlink()
-    assert run("batch", work, "-o", out, "-f", "json", "-j", "1").exit_code == 0
-    assert run("batch", work, "-o", out, "-f", "json", "-j", "1").exit_code == 0
+    assert invoked("batch", work, "-o", out, "-f", "json", "-j", "1").exit_code == 0
+    assert invoked("batch", work, "-o", out, "-f", "json", "-j", "1").exit_code == 0
 
 
 @pytest.mark.parametrize(("command", "words"), FILES)
@@ -102,16 +95,14 @@ def test_a_single_file_is_not_replaced(
     command: str, words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    there = tmp_path / "simple-pendulum.yaml"
-    there.write_text("mine")
+    there = filed(tmp_path / "simple-pendulum.yaml", "mine")
     given = {path.stem: path for path in SHIPPED.glob("*.yaml")}
     full = [word.format_map({**given, "there": there.name, "folder": tmp_path}) for word in words]
-    done = run(command, *full)
-    assert done.exit_code == 2, done.output
+    done = invoked(command, *full, code=2)
     assert "is there already" in done.stderr
     assert "--force" in done.stderr
     assert there.read_text() == "mine"
-    assert run(command, *full, "--force").exit_code == 0
+    assert invoked(command, *full, "--force").exit_code == 0
     assert there.read_text() != "mine"
 
 
@@ -121,11 +112,11 @@ def test_a_page_at_its_usual_place_is_ours(tmp_path: Path, monkeypatch: pytest.M
     page.parent.mkdir(parents=True)
     page.write_text("mine")
     asked = ["view", SHIPPED / "simple-pendulum.yaml", "-q"]
-    assert run(*asked).exit_code == 1
+    assert invoked(*asked).exit_code == 1
     assert page.read_text() == "mine"
     page.unlink()
-    assert run(*asked).exit_code == 0
-    assert run(*asked).exit_code == 0
+    assert invoked(*asked).exit_code == 0
+    assert invoked(*asked).exit_code == 0
 
 
 def test_every_command_that_writes_is_here() -> None:

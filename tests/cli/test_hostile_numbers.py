@@ -11,15 +11,13 @@ from pathlib import Path
 from threading import Timer
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.code import c_source
 from mbsym_cli.files import alone, obstacle
-from mbsym_cli.main import main
 
 PENDULUM = """
 mbsym: 1
@@ -188,8 +186,7 @@ def test_a_folder_that_cannot_be_is_said_before_anything_is_computed(command: st
     arguments = [command, str(SHIPPED / "simple-pendulum.yaml"), "--set", "theta=1"]
     arguments += [] if command == "extremes" else ["--time", "1"]
     for folder in (tmp_path / "file" / "inside", tmp_path / ("a" * 300)):
-        done = CliRunner().invoke(main, [*arguments, "-o", str(folder)])
-        assert done.exit_code == 1, done.output
+        done = invoked(*arguments, "-o", folder, code=1)
         assert "cannot be written" in done.stderr
     assert not obstacle(tmp_path / "new" / "folder")
 

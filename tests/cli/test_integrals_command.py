@@ -8,19 +8,18 @@ from fractions import Fraction
 import jsonschema
 import pytest
 import sympy
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.analysis.polynomial import integrals_of, setting, special_relations
 from mbsym.report.schemas import schema
 from mbsym.studies.integrals.relations import darboux_values
-from mbsym_cli.main import main
 
 CLEBSCH, TOP = "systems/clebsch-poisson.yaml", "systems/euler-poisson.yaml"
 
 
-def run(*words):
-    return CliRunner().invoke(main, ["integrals", *words])
+def run(*words, code: int | None = None):
+    return invoked("integrals", *words, code=code)
 
 
 @pytest.fixture(autouse=True)
@@ -30,8 +29,7 @@ def _at_the_root(monkeypatch, request):
 
 def test_clebschs_integral_is_found():
     """A fourth one of degree two (Clebsch 1871), and no other up to degree four."""
-    done = run(CLEBSCH, "--json")
-    assert done.exit_code == 0
+    done = run(CLEBSCH, "--json", code=0)
     data = json.loads(done.stdout)
     jsonschema.validate(data, schema("integrals"))
     assert [one["weight"] for one in data["integrals"]] == [2, 2, 2, 2]
@@ -62,8 +60,7 @@ NUMBERS = [f"--set={one}" for one in ("B=2", "C=1", "x0=1", "y0=0", "z0=0", "m=1
 
 def test_kovalevskayas_value_is_found():
     """A = B = 2 C (Acta Math. 12, 1889)."""
-    done = run(TOP, *NUMBERS, "--vary", "A=1:5", "--json")
-    assert done.exit_code == 0
+    done = run(TOP, *NUMBERS, "--vary", "A=1:5", "--json", code=0)
     data = json.loads(done.stdout)
     jsonschema.validate(data, schema("integrals"))
     assert [one["value"] for one in data["along"]["values"]] == ["2"]
@@ -201,8 +198,7 @@ def test_systems_in_angles_have_rates_sines_and_cosines():
         (4, "generalised energy"),
     ]
     assert data["complete"] is True
-    driven = run("systems/cart-pole.yaml")
-    assert driven.exit_code == 1
+    driven = run("systems/cart-pole.yaml", code=1)
     assert "F, a function of the time, occurs" in driven.stderr
 
 
@@ -254,12 +250,11 @@ def test_values_with_further_invariant_relations_are_told():
 
 def test_values_of_integrals_are_told_with_what_holds_there(tmp_path):
     """A force (y' - 2) z'^2 along x and y' constant: where y' is 2, x' is constant."""
-    path = tmp_path / "planted.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "planted.yaml",
         "mbsym: 1\nname: planted\nparameters: {c: {sign: positive}}\n"
         "bodies:\n  - {name: carriage, attached to: 0, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}\n"
         "loads:\n  - generalized force: {x: (y_dot - c)*z_dot**2, y: 0, z: x_dot*y_dot + z_dot}\n",
-        encoding="utf-8",
     )
     data = json.loads(run(str(path), "-d2", "-sc=2", "--relations", "--json").stdout)
     jsonschema.validate(data, schema("integrals"))

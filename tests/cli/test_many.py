@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from click.testing import Result
+from conftest import SHIPPED, filed, invoked
 from jsonschema import Draft202012Validator
 
 import mbsym
@@ -19,7 +19,6 @@ from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import machine_code
 from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 PENDULUM = str(SHIPPED / "double-pendulum.yaml")
 AWAY = """
@@ -33,8 +32,8 @@ initial: {x: 0.5}
 """
 
 
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ["simulate", *arguments])
+def run(*arguments: str, code: int | None = None) -> Result:
+    return invoked("simulate", *arguments, code=code)
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -44,8 +43,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 def test_an_ensemble_is_written_and_summed_up(tmp_path: Path) -> None:
     arguments = ["--time", "2", "--vary", "theta1=0:pi/2:9", "--vary", "m1=1:2:3", "--samples", "11"]
-    done = run(PENDULUM, *arguments, "--out", str(tmp_path))
-    assert done.exit_code == 0, done.output
+    done = run(PENDULUM, *arguments, "--out", str(tmp_path), code=0)
     assert "27, theta1, m1 varied" in done.output
     content = json.loads((tmp_path / "ensemble.json").read_text())
     Draft202012Validator(schema("ensemble")).validate(content)
@@ -62,8 +60,7 @@ def test_an_ensemble_is_written_and_summed_up(tmp_path: Path) -> None:
 
 
 def test_members_that_end_early_are_told_everywhere(tmp_path: Path) -> None:
-    path = tmp_path / "away.yaml"
-    path.write_text(AWAY)
+    path = filed(tmp_path / "away.yaml", AWAY)
     done = run(str(path), "--time", "3", "--vary", "x=0:1:11", "--out", str(tmp_path / "out"), "--format", "csv")
     assert done.exit_code == 3
     assert "member 10 (x = 1): blow-up" in done.output
@@ -104,23 +101,20 @@ def test_the_same_seed_draws_the_same_members(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_wrong_is_said_and_nothing_written(arguments: list[str], told: str, tmp_path: Path) -> None:
-    done = run(PENDULUM, "--time", "1", *arguments, "--out", str(tmp_path / "out"))
-    assert done.exit_code == 2, done.output
+    done = run(PENDULUM, "--time", "1", *arguments, "--out", str(tmp_path / "out"), code=2)
     assert told in done.output
     assert not (tmp_path / "out").exists()
 
 
 def test_derivatives_over_switches_are_refused_before_anything_is_written(tmp_path: Path) -> None:
     (tmp_path / "kink.yaml").write_text(AWAY.replace("x**3", "-sign(x_dot) - x"), encoding="utf-8")
-    done = run(str(tmp_path / "kink.yaml"), "--time", "1", "--sensitivity", "x", "--out", str(tmp_path / "out"))
-    assert done.exit_code == 2, done.output
+    done = run(str(tmp_path / "kink.yaml"), "--time", "1", "--sensitivity", "x", "--out", str(tmp_path / "out"), code=2)
     assert "--sensitivity: error[not-smooth]" in done.output
     assert not (tmp_path / "out").exists()
 
 
 def test_derivatives_are_written(tmp_path: Path) -> None:
-    done = run(PENDULUM, "--time", "1", "--sensitivity", "theta1,m1", "--out", str(tmp_path), "--format", "csv")
-    assert done.exit_code == 0, done.output
+    run(PENDULUM, "--time", "1", "--sensitivity", "theta1,m1", "--out", str(tmp_path), "--format", "csv", code=0)
     found = rows(tmp_path / "sensitivity.csv")
     assert float(found[0]["d theta1/d theta1(0)"]) == 1
     h = 1e-5
@@ -157,8 +151,7 @@ initial: {p: 1, q: 1/2, r: 1/3}
 def test_where_kernels_carry_pairs_ensembles_are_said_not_to(tmp_path: Path) -> None:
     """And so it is: the accelerations of a member's program are those of the plain kernel, not of the one in pairs."""
     (tmp_path / "triple.yaml").write_text(TRIPLE, encoding="utf-8")
-    done = CliRunner().invoke(main, ["extremes", str(tmp_path / "triple.yaml"), "--out", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+    done = invoked("extremes", tmp_path / "triple.yaml", "--out", tmp_path, code=0)
     told = " ".join(done.stdout.split())
     assert "carry" in told
     assert "in pairs of numbers" in told
@@ -173,6 +166,5 @@ def test_where_kernels_carry_pairs_ensembles_are_said_not_to(tmp_path: Path) -> 
 
 def test_where_no_kernel_carries_pairs_nothing_is_said_of_ensembles(tmp_path: Path) -> None:
     (tmp_path / "away.yaml").write_text(AWAY, encoding="utf-8")
-    done = CliRunner().invoke(main, ["extremes", str(tmp_path / "away.yaml"), "--out", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+    done = invoked("extremes", tmp_path / "away.yaml", "--out", tmp_path, code=0)
     assert "Ensembles" not in done.stdout

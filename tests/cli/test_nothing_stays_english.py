@@ -12,14 +12,12 @@ import shlex
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 from outputs import documented
 
 from mbsym.expressions.message import Counted, Said, pieces
 from mbsym.report.language import Language
 from mbsym.source import read, render
-from mbsym_cli.main import main
 
 #: Letters of ours and functions in formulas, methods and arithmetics, and their like.
 NAMES = {"sin", "cos", "sqrt", "exp", "log", "tanh", "det", "sum", "const", "dot", "lambda", "Lambda", "omega", "Gamma",
@@ -144,7 +142,7 @@ def _write(path: Path, text: str) -> None:
 
 def untranslated(words: list[str], folder: Path) -> list[tuple[str, str]]:
     """What a command says outside of the marks, on both streams."""
-    done = CliRunner().invoke(main, words, prog_name="mbsym")
+    done = invoked(*words, prog_name="mbsym")
     assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
     read_here = {"good.yaml", "bad.yaml"} | {Path(word).name for word in words}
     described = [x.read_text(encoding="utf-8") for x in folder.rglob("*.yaml") if x.name in read_here]
@@ -174,7 +172,7 @@ def test_a_documented_command_speaks_the_language(line: str, folder: Path) -> No
 
 
 def test_the_page_of_a_batch_speaks_the_language(folder: Path) -> None:
-    CliRunner().invoke(main, ["batch", "in", "--format", "json"])
+    invoked("batch", "in", "--format", "json")
     page = (folder / "build" / "index.html").read_text(encoding="utf-8")
     body = re.sub(r"<[^>]*>", "\n", page.partition("</head>")[2])
     assert body.count("⟦") > 15

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import filed, invoked
 from test_simulate import table
 
 from mbsym.numerics.ensembles.side_by_side import TABLEAUX
@@ -26,7 +27,6 @@ from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.table import METHODS
 from mbsym.studies.simulate import PAIRS, STUDY
 from mbsym.studies.study import Apart, Needed
-from mbsym_cli.main import main
 from mbsym_cli.study import command_of
 
 APART = [one for one in PAIRS if isinstance(one, Apart)]
@@ -359,13 +359,11 @@ def _joins(some: frozenset[str], items: set[str], friends: dict[str, set[str]]) 
 
 @pytest.fixture(scope="module")
 def described(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("pairs") / "dumbbell.yaml"
-    path.write_text(DUMBBELL, encoding="utf-8")
-    return path
+    return filed(tmp_path_factory.mktemp("pairs") / "dumbbell.yaml", DUMBBELL)
 
 
-def called(*arguments: object) -> Result:
-    return CliRunner().invoke(main, ["simulate", *map(str, arguments)])
+def called(*arguments: object, code: int | None = None) -> Result:
+    return invoked("simulate", *arguments, code=code)
 
 
 #: What an earlier run has to have in common with the one that goes on.
@@ -402,8 +400,7 @@ def test_options_that_go_together_have_their_effect(place: int, described: Path,
 @pytest.mark.parametrize("one", APART, ids=lambda one: f"{one.option} {one.other}")
 def test_options_that_do_not_go_together_are_refused_by_name(one: Apart, described: Path, tmp_path: Path) -> None:
     items = {next(name for name, item in ITEMS.items() if option in item.names) for option in (one.option, one.other)}
-    result = called(*words(closure(items), described, tmp_path))
-    assert result.exit_code == 2, result.output
+    result = called(*words(closure(items), described, tmp_path), code=2)
     assert f"{one.option.split()[0]}: error[conflicting-options]: {one.option} does not go with {one.other}: " in (
         result.stderr
     )
@@ -428,8 +425,7 @@ def test_values_that_do_not_go_together_are_refused_by_name(
     case: tuple[str, str, tuple[str, str]], described: Path, tmp_path: Path
 ) -> None:
     one, other, named = case
-    result = called(*words(closure((one, other)), described, tmp_path))
-    assert result.exit_code == 2, result.output
+    result = called(*words(closure((one, other)), described, tmp_path), code=2)
     assert all(name in result.stderr for name in named), result.stderr
     assert not (tmp_path / "out").exists()
 
@@ -437,8 +433,7 @@ def test_values_that_do_not_go_together_are_refused_by_name(
 @pytest.mark.parametrize("one", NEEDED, ids=lambda one: one.option)
 def test_an_option_about_another_one_is_not_passed_over(one: Needed, described: Path, tmp_path: Path) -> None:
     name = next(name for name, item in ITEMS.items() if one.option in item.names)
-    result = called(*words({name}, described, tmp_path))
-    assert result.exit_code == 2, result.output
+    result = called(*words({name}, described, tmp_path), code=2)
     assert f"{one.option}: error[missing-option]: {one.option} goes with {one.other}" in result.stderr
 
 
@@ -452,15 +447,13 @@ def test_an_option_about_another_one_is_not_passed_over(one: Needed, described: 
     ],
 )
 def test_one_name_has_one_value(arguments: tuple[str, ...], told: str, described: Path, tmp_path: Path) -> None:
-    result = called(described, "--time", 1, *arguments, "--out", tmp_path / "out")
-    assert result.exit_code == 2, result.output
+    result = called(described, "--time", 1, *arguments, "--out", tmp_path / "out", code=2)
     assert told in result.stderr
     assert not (tmp_path / "out").exists()
 
 
 def test_the_limit_of_steps_is_one_of_members_too(described: Path, tmp_path: Path) -> None:
-    result = called(described, "--time", 9, "--vary", "alpha=0:1/5:3", "--step-limit", 3, "--out", tmp_path)
-    assert result.exit_code == 3, result.output
+    result = called(described, "--time", 9, "--vary", "alpha=0:1/5:3", "--step-limit", 3, "--out", tmp_path, code=3)
     assert "members ended early" in result.stderr
 
 
@@ -480,8 +473,7 @@ def test_a_quiet_plan_says_nothing_but_by_its_exit_code(described: Path, tmp_pat
     how = ("--time", 1, "--plan", "--quiet", "--out", tmp_path / "out")
     good = called(described, *how, "--accuracy", "1e-3")
     assert (good.exit_code, good.output) == (0, "")
-    bad = called(described, *how, "--accuracy", "1e-9", "--method", "rk4", "--step", "0.1")
-    assert bad.exit_code == 3
+    bad = called(described, *how, "--accuracy", "1e-9", "--method", "rk4", "--step", "0.1", code=3)
     assert bad.stdout == ""
     assert "no plan is shown to reach the accuracy asked for" in " ".join(bad.stderr.split())
     assert not (tmp_path / "out").exists()

@@ -14,14 +14,14 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
+from conftest import SHIPPED, filed, invoked
 
 from mbsym.expressions.parser import names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym_cli.main import main
 from mbsym_cli.options import Options
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
-DOUBLE = SYSTEMS / "double-pendulum.yaml"  # conservative: m1, m2, l1, l2, g positive; theta1, theta2
+DOUBLE = SHIPPED / "double-pendulum.yaml"  # conservative: m1, m2, l1, l2, g positive; theta1, theta2
 DAMPED = """
 mbsym: 1
 name: Damped oscillator
@@ -48,14 +48,8 @@ initial: {r: 1, phi: 0}
 """
 
 
-def mbsym(*words: Any) -> Result:
-    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
-
-
 def described(folder: Path, text: str) -> Path:
-    path = folder / "system.yaml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return filed(folder / "system.yaml", text)
 
 
 def heads(done: Result) -> list[str]:
@@ -86,8 +80,7 @@ def test_settings_are_complained_about_in_one_round_and_in_the_same_words(words:
     settings = [word for word in SETTINGS if words[0] != "equilibria" or word != "theta1=pi"]
     if words[0] == "equilibria":
         settings = settings[1:]
-    done = mbsym(words[0], DOUBLE, *words[1:], *settings, *out)
-    assert done.exit_code == 2
+    done = invoked(words[0], DOUBLE, *words[1:], *settings, *out, code=2)
     assert heads(done) == [
         "--set: error[unknown-name]: there is nothing called 'zz' to set",
         "--set: error[unknown-function]: unknown function 'cs'",
@@ -104,35 +97,35 @@ def test_settings_are_complained_about_in_one_round_and_in_the_same_words(words:
 
 def test_a_value_that_was_refused_is_not_missing_as_well(tmp_path: Path) -> None:
     path = described(tmp_path, DAMPED.replace("values: {m: 1, k: 4, c: 1/10}", "values: {m: 1}"))
-    done = mbsym("simulate", path, "--time", 1, "--set", "k=3 N", "--out", tmp_path / "out")
-    assert done.exit_code == 2
+    done = invoked("simulate", path, "--time", 1, "--set", "k=3 N", "--out", tmp_path / "out", code=2)
     assert "no value for c\n" in done.stderr
     assert "2 errors" in done.stderr
 
 
 def test_an_input_is_not_set_but_given(tmp_path: Path) -> None:
     driven = DAMPED.replace("loads:", "inputs: {F: a force}\nloads:\n  - generalized force: {x: F}")
-    done = mbsym("simulate", described(tmp_path, driven), "--time", 1, "--set", "F=0")
+    done = invoked("simulate", described(tmp_path, driven), "--time", 1, "--set", "F=0")
     assert heads(done) == ["--set: error[misplaced-name]: 'F' is an input and has no value to set"]
     assert "--input F=..." in done.stderr
 
 
 def test_a_relation_that_is_broken_by_a_setting_is_said_of_the_setting(tmp_path: Path) -> None:
     path = described(tmp_path, DAMPED)
-    done = mbsym("simulate", path, "--time", 1, "--set", "e=5", "--set", "c=-1", "--out", tmp_path / "out")
+    done = invoked("simulate", path, "--time", 1, "--set", "e=5", "--set", "c=-1", "--out", tmp_path / "out")
     assert heads(done) == [
         "--set: error[conflicting-values]: e = 5 contradicts its relation, which gives 4",
         "--set: error[sign-contradiction]: c = -1, but it is declared nonnegative",
     ]
-    fine = mbsym("simulate", path, "--time", 1, "--set", "e=4", "--set", "c=0", "-f", "csv", "--out", tmp_path / "out")
+    fine = invoked(
+        "simulate", path, "--time", 1, "--set", "e=4", "--set", "c=0", "-f", "csv", "--out", tmp_path / "out"
+    )
     assert fine.exit_code == 0, fine.output
 
 
 def test_all_options_of_simulate_at_once(tmp_path: Path) -> None:
     words = ["--time", "20s", "--method", "rk5", "--set", "Q=3", "--set", "theta1=30deg", "--tolerance", "-1"]
     words += ["--format", "jpg", "--samples", "0", "--step-limit", "x", "--arithmetic", "float16"]
-    done = mbsym("simulate", DOUBLE, *words, "--out", tmp_path / "out")
-    assert done.exit_code == 2
+    done = invoked("simulate", DOUBLE, *words, "--out", tmp_path / "out", code=2)
     assert sorted(map(tuple, codes(done))) == [
         ("--arithmetic", "unknown-arithmetic"),
         ("--format", "unknown-format"),
@@ -153,8 +146,7 @@ def test_all_options_of_simulate_at_once(tmp_path: Path) -> None:
 def test_the_description_is_read_even_if_the_options_are_wrong(tmp_path: Path) -> None:
     path = described(tmp_path, DAMPED.replace("mass: m", "mass: mm"))
     for words in (("simulate", "--method", "rk5"), ("tradeoff", "--methods", "rk5"), ("run", "--problems", "99")):
-        done = mbsym(words[0], path, *words[1:], "--out", tmp_path / "out")
-        assert done.exit_code == 2
+        done = invoked(words[0], path, *words[1:], "--out", tmp_path / "out", code=2)
         assert "error[unknown-name]: unknown name 'mm'" in done.stderr
         assert f"{words[1]}: error[unknown-" in done.stderr
         assert ("--time: error[missing-option]" in done.stderr) == (words[0] != "run")
@@ -183,22 +175,20 @@ def test_methods_that_do_not_fit_are_refused_before_compiling(
 
     monkeypatch.setattr("mbsym.numerics.dynamics.Dynamics", compiled)
     path = described(tmp_path, text) if text else DOUBLE
-    done = mbsym("simulate", path, "--time", 2, *words, "--out", tmp_path / "out")
-    assert done.exit_code == 2, done.output
+    done = invoked("simulate", path, "--time", 2, *words, "--out", tmp_path / "out", code=2)
     assert [tuple(one) for one in codes(done)] == [code]
     assert said in done.stderr
     assert "nothing was written" in done.stderr
 
 
 def test_a_method_of_fixed_step_runs_with_its_step(tmp_path: Path) -> None:
-    done = mbsym("simulate", DOUBLE, "--time", 1, "--method", "RK4", "--step", "0.01", "-f", "csv", "-o", tmp_path)
+    done = invoked("simulate", DOUBLE, "--time", 1, "--method", "RK4", "--step", "0.01", "-f", "csv", "-o", tmp_path)
     assert done.exit_code == 0, done.output
 
 
 def test_each_mistake_of_tradeoff_is_said_once(tmp_path: Path) -> None:
     words = ["--time", "1", "--methods", "foo,rk5,rk4", "--target", "-1", "--budget", "0", "--out", tmp_path / "out"]
-    done = mbsym("tradeoff", DOUBLE, *words)
-    assert done.exit_code == 2
+    done = invoked("tradeoff", DOUBLE, *words, code=2)
     assert heads(done) == [
         "--target: error[bad-number]: it must be positive",
         "--methods: error[unknown-method]: there is no method 'foo'",
@@ -210,7 +200,7 @@ def test_each_mistake_of_tradeoff_is_said_once(tmp_path: Path) -> None:
 
 
 def test_all_options_of_run_at_once(tmp_path: Path) -> None:
-    done = mbsym("run", DOUBLE, "--problems", "99,5-3", "--format", "pdf", "--terms", "-1", "--out", tmp_path / "out")
+    done = invoked("run", DOUBLE, "--problems", "99,5-3", "--format", "pdf", "--terms", "-1", "--out", tmp_path / "out")
     assert done.exit_code == 2
     assert heads(done) == [
         "--problems: error[unknown-problem]: there is no problem 99",
@@ -246,18 +236,16 @@ def test_problem_numbers(text: str, found: tuple[int, ...], wrong: list[str]) ->
 
 
 def test_equilibria_wants_exact_numbers_and_no_state(tmp_path: Path) -> None:
-    done = mbsym("equilibria", DOUBLE, "--set", "m1=sqrt(2)", "--set", "theta1=1", "--within", "1e9")
-    assert done.exit_code == 2
+    done = invoked("equilibria", DOUBLE, "--set", "m1=sqrt(2)", "--set", "theta1=1", "--within", "1e9", code=2)
     assert [tuple(one) for one in codes(done)] == [("--set", "misplaced-name"), ("--within", "bad-number")]
-    varied = mbsym("equilibria", DOUBLE, "--vary", "m2=1:2", "--set", "m1=sqrt(2)", "--out", tmp_path / "out")
+    varied = invoked("equilibria", DOUBLE, "--vary", "m2=1:2", "--set", "m1=sqrt(2)", "--out", tmp_path / "out")
     assert [tuple(one) for one in codes(varied)] == [("--set", "not-rational")]
-    assert mbsym("equilibria", DOUBLE, "--set", "m1=3/2", "--within", "2*pi").exit_code == 0
+    assert invoked("equilibria", DOUBLE, "--set", "m1=3/2", "--within", "2*pi").exit_code == 0
 
 
 def test_a_fall_to_the_centre_is_no_matter_of_angles_alone(tmp_path: Path) -> None:
     path = described(tmp_path, KEPLER)
-    done = mbsym("simulate", path, "--time", 3, "-f", "csv", "--no-estimate", "--out", tmp_path / "out")
-    assert done.exit_code == 3, done.output
+    done = invoked("simulate", path, "--time", 3, "-f", "csv", "--no-estimate", "--out", tmp_path / "out", code=3)
     assert "error[singular-mass-matrix]" in done.stderr
     assert "a distance has shrunk to zero (a collision, a fall to the centre)" in done.stderr
 
@@ -303,8 +291,7 @@ def test_long_values_and_control_characters_are_shown_safely() -> None:
 @pytest.mark.parametrize("command", ["run", "simulate", "tradeoff", "extremes", "convert"])
 def test_an_empty_path_is_not_the_current_folder(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    done = mbsym(command, DOUBLE, "--out", "")
-    assert done.exit_code == 2
+    done = invoked(command, DOUBLE, "--out", "", code=2)
     assert "it is empty" in done.stderr
     assert not list(tmp_path.iterdir())
 
@@ -334,7 +321,7 @@ PLACES = [
 def test_numbers_that_are_none_are_refused_wherever_they_are_typed(place: str, tmp_path: Path) -> None:
     """sqrt(-1), log(0), tan(pi/2) and 1/(2 - 2) are no numbers, and exp(1000) = 2e434 is none that a double holds."""
     files = {"pendulum": "simple-pendulum"}
-    words = re.sub(r"{([\w-]+)}", lambda name: str(SYSTEMS / f"{files.get(name[1], name[1])}.yaml"), place).split()
+    words = re.sub(r"{([\w-]+)}", lambda name: str(SHIPPED / f"{files.get(name[1], name[1])}.yaml"), place).split()
     for number in ("sqrt(-1)", "log(0)", "exp(1000)", "tan(pi/2)", "1/(sqrt(2)**2-2)"):
         done = CliRunner().invoke(main, [word.replace("{}", number) for word in words])
         assert done.exit_code == 2, (number, done.output)

@@ -8,16 +8,15 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 FAST = "systems/gyrostat-fast.yaml"
 
 
-def run(*words):
-    return CliRunner().invoke(main, ["oscillations", *words])
+def run(*words, code: int | None = None):
+    return invoked("oscillations", *words, code=code)
 
 
 @pytest.fixture(autouse=True)
@@ -26,8 +25,7 @@ def _at_the_root(monkeypatch, request):
 
 
 def test_the_gyrostat_as_json_and_as_text():
-    done = run(FAST, "--order", "1", "--set", "lx=0", "--json")
-    assert done.exit_code == 0
+    done = run(FAST, "--order", "1", "--set", "lx=0", "--json", code=0)
     data = json.loads(done.stdout)
     jsonschema.validate(data, schema("oscillations"))
     assert (data["leading"], data["amplitude"]) == ("gamma1", {"kind": "free", "value": "amplitude"})
@@ -79,8 +77,7 @@ def test_numbers_that_no_body_has_and_numbers_of_what_is_small_are_put_in(tmp_pa
     text = re.sub("^values: .*$", f"values: {{{values}}}", text, flags=re.MULTILINE)
     (tmp_path / "table-1.yaml").write_text(text.replace("atan(4/3)", "atan(999.9995)"), encoding="utf-8")
     put = [word for name, value in TABLE_1.items() for word in ("--set", f"{name}={value}")]
-    done = run(str(tmp_path / "table-1.yaml"), "--order", "1", *put)
-    assert done.exit_code == 0, done.stderr
+    done = run(str(tmp_path / "table-1.yaml"), "--order", "1", *put, code=0)
     told = " ".join(done.stdout.split())
     at = {"r_0": 5}
 
@@ -97,16 +94,14 @@ def test_numbers_that_no_body_has_and_numbers_of_what_is_small_are_put_in(tmp_pa
 def test_what_leads_and_what_is_small_are_checked_where_they_stand(tmp_path):
     text = Path(FAST).read_text(encoding="utf-8").replace("leading: gamma1", "leading: zeta").replace("q: 1}", "qq: 1}")
     (tmp_path / "wrong.yaml").write_text(text, encoding="utf-8")
-    done = run(str(tmp_path / "wrong.yaml"))
-    assert done.exit_code == 2
+    done = run(str(tmp_path / "wrong.yaml"), code=2)
     assert "wrong.yaml:23:" in done.stderr
     assert "zeta is no variable" in done.stderr.replace("'", "")
     assert "unknown name" in done.stderr
 
 
 def test_a_damped_pendulum_has_none():
-    done = run("systems/simple-pendulum.yaml")
-    assert done.exit_code == 1
+    done = run("systems/simple-pendulum.yaml", code=1)
     assert "no pair of imaginary roots was found for theta, theta_dot" in " ".join(done.stderr.split())
 
 
@@ -123,8 +118,7 @@ loads:
 
 def test_frequencies_of_one_block_that_may_be_in_resonance_are_listed(tmp_path):
     """The squares k and k + 2 c are equal where c = 0, and as 1 to 9 where c = 4 k."""
-    path = tmp_path / "coupled.yaml"
-    path.write_text(COUPLED, encoding="utf-8")
+    path = filed(tmp_path / "coupled.yaml", COUPLED)
     told = " ".join(run(str(path), "--of", "x", "--order", "1").stdout.split())
     assert "where c = 0 (harmonic 1, order 1, of x_dot, y_dot, x, y)" in told
     assert "where c - 4 k = 0 (harmonic 3, order 1, of x_dot, y_dot, x, y)" in told
@@ -146,8 +140,7 @@ loads:
 
 def test_resonances_of_a_block_that_leads_and_has_damping_need_two_conditions(tmp_path):
     """By hand, v = x - y: v'' + 2 c v' + (k^2 + 2 d) v = -eps x^3; at i n k that is k^2 (1 - n^2) + 2 d + 2 c i n k."""
-    path = tmp_path / "damped.yaml"
-    path.write_text(DAMPED % "real", encoding="utf-8")
+    path = filed(tmp_path / "damped.yaml", DAMPED % "real")
     done = run(str(path), "--of", "x", "--order", "1", "--json")
     data = json.loads(done.stdout)
     jsonschema.validate(data, schema("oscillations"))
@@ -173,8 +166,7 @@ loads:
 
 
 def test_roots_that_are_zero_and_roots_that_are_not_found_are_no_damping(tmp_path):
-    path = tmp_path / "chain.yaml"
-    path.write_text(CHAIN % "k**2*(x - y)**2/2 + eps*(x - y)**4/4 + z**2/2", encoding="utf-8")
+    path = filed(tmp_path / "chain.yaml", CHAIN % "k**2*(x - y)**2/2 + eps*(x - y)**4/4 + z**2/2")
     data = json.loads(run(str(path), "--of", "x", "--order", "1", "--json").stdout)
     jsonschema.validate(data, schema("oscillations"))
     assert (data["with_root_zero"], data["forced"]) == ([["x_dot", "y_dot", "x", "y"]], [])
@@ -183,8 +175,7 @@ def test_roots_that_are_zero_and_roots_that_are_not_found_are_no_damping(tmp_pat
     # a cubic without rational roots: all three frequencies are real, none is found
     text = "x**2/2 + x*y + 3*y**2/2 + y*z + 3*z**2 + eps*x**4/4 + k*eps*x**3"
     path.write_text(CHAIN % text, encoding="utf-8")
-    done = run(str(path), "--of", "x", "--order", "1")
-    assert done.exit_code == 1
+    done = run(str(path), "--of", "x", "--order", "1", code=1)
     told = " ".join(done.stderr.split())
     assert "the frequencies of x_dot, y_dot, z_dot, x, y, z were not found as square roots" in told
     assert "no periodic solution" not in told
@@ -192,7 +183,7 @@ def test_roots_that_are_zero_and_roots_that_are_not_found_are_no_damping(tmp_pat
 
 def test_frequencies_that_variables_share_are_told_once_with_the_option() -> None:
     """Both modes of the double pendulum move both angles: no variable's name tells them apart."""
-    done = CliRunner().invoke(main, ["oscillations", "systems/double-pendulum.yaml"])
+    done = invoked("oscillations", "systems/double-pendulum.yaml")
     text = " ".join(done.output.split())
     assert "of: theta1, theta2, theta1_dot, theta2_dot (2 of them); say which of the frequencies" in text
     assert "--frequency K" in text
@@ -243,8 +234,7 @@ def test_another_zero_of_the_coordinate_changes_nothing_but_the_centre(tmp_path)
     """With x - 2 in place of x the series has 2 more, is as good, and what it begins with is amplitude + 2."""
     told = []
     for name, x, start in (("plain", "x", "0.5"), ("shifted", "2 - x", "1.5")):
-        path = tmp_path / f"{name}.yaml"
-        path.write_text(DUFFING.format(x=x, start=start), encoding="utf-8")
+        path = filed(tmp_path / f"{name}.yaml", DUFFING.format(x=x, start=start))
         told.append(" ".join(run(str(path)).stdout.split()))
     plain, shifted = (re.findall(r"Over one period.*(?=Measured at)", text)[0] for text in told)
     assert plain == shifted
@@ -254,11 +244,10 @@ def test_another_zero_of_the_coordinate_changes_nothing_but_the_centre(tmp_path)
 
 
 def test_variables_of_a_motion_that_is_not_zero_are_told_to_be_deviations(tmp_path):
-    path = tmp_path / "pendulum.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "pendulum.yaml",
         "mbsym: 1\nname: p\nbodies: [{name: b, rotation: {axes: [3], angles: [th]}, mass centre: [0, 1, 0], mass: 1}]\n"
         "loads: [{uniform gravity: {vector: [0, -1, 0]}}]\nmotion: {th: pi}\ninitial: {th: 3}\n",
-        encoding="utf-8",
     )
     assert "th: here deviations from the unperturbed motion." in run(str(path)).stdout
     path.write_text(path.read_text(encoding="utf-8").replace("[0, 1, 0]", "[0, -1, 0]").replace("pi", "0"))

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 from flint import acb, arb, ctx
 
 from mbsym.expressions.tree import Number
@@ -18,15 +17,10 @@ from mbsym.numerics.scenario import scenario
 from mbsym.source import load
 from mbsym.studies.study import identity
 from mbsym_cli.beside import Beside
-from mbsym_cli.main import main
 from mbsym_cli.remembered import remembered
 
 PENDULUM = SHIPPED / "simple-pendulum.yaml"
 QUICK = ("--time", 1, "--budget", 1, "--methods", "rk45")
-
-
-def mbsym(*words: object) -> Result:
-    return CliRunner().invoke(main, list(map(str, words)))
 
 
 @pytest.fixture
@@ -105,8 +99,7 @@ def test_scenarios_are_known_by_what_they_mean() -> None:
 def test_a_second_question_measures_nothing(cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Other targets, and the same rows but for where they stand; --anew measures."""
     monkeypatch.setattr(Beside, "allowed", True)
-    first = mbsym("tradeoff", PENDULUM, *QUICK, "-o", tmp_path / "out")
-    assert first.exit_code == 0, first.output
+    first = invoked("tradeoff", PENDULUM, *QUICK, "-o", tmp_path / "out", code=0)
     assert "--anew" not in first.output
     table = (tmp_path / "out" / "tradeoff.csv").read_bytes()
 
@@ -118,13 +111,13 @@ def test_a_second_question_measures_nothing(cache: Path, tmp_path: Path, monkeyp
 
     with monkeypatch.context() as patched:
         patched.setattr("mbsym.numerics.trade.tradeoff.studied", forbidden)
-        again = mbsym("tradeoff", PENDULUM, *QUICK, "--target", "1e-5", "-o", tmp_path / "out")
+        again = invoked("tradeoff", PENDULUM, *QUICK, "--target", "1e-5", "-o", tmp_path / "out")
         assert (again.exit_code, measured) == (0, []), again.output
         assert "measured by an earlier command, seconds too; --anew measures again" in again.output
         assert (tmp_path / "out" / "tradeoff.csv").read_bytes() == table
         for more in (("--anew",), ("--set", "l=2"), ("--time", "2"), ("--no-fidelity",)):
             before = len(measured)
-            assert mbsym("tradeoff", PENDULUM, *QUICK, *more, "-o", tmp_path / "out").exit_code
+            assert invoked("tradeoff", PENDULUM, *QUICK, *more, "-o", tmp_path / "out").exit_code
             assert len(measured) == before + 1, more
 
 
@@ -133,17 +126,16 @@ def test_scenes_say_what_was_measured_before(cache: Path, tmp_path: Path, monkey
     told = "measured by an earlier command, seconds too; --anew measures again"
     quick = (*QUICK, "--no-fidelity")
     scenes = (PENDULUM, SHIPPED / "spring-pendulum.yaml")
-    mbsym("tradeoff", PENDULUM, *quick, "-o", tmp_path)
-    one_of_two = mbsym("tradeoff", *scenes, *quick, "-o", tmp_path)
+    invoked("tradeoff", PENDULUM, *quick, "-o", tmp_path)
+    one_of_two = invoked("tradeoff", *scenes, *quick, "-o", tmp_path)
     assert " ".join(one_of_two.output.split()).endswith(f"Simple pendulum: {told}")
-    both = mbsym("tradeoff", *scenes, *quick, "--target", "1e-5", "-o", tmp_path)
+    both = invoked("tradeoff", *scenes, *quick, "--target", "1e-5", "-o", tmp_path)
     assert told in both.output
     assert f": {told}" not in both.output
 
 
 def test_several_scenes_are_compared_in_one_table(tmp_path: Path) -> None:
-    done = mbsym("tradeoff", PENDULUM, SHIPPED / "spring-pendulum.yaml", *QUICK, "-o", tmp_path)
-    assert done.exit_code == 0, done.output
+    done = invoked("tradeoff", PENDULUM, SHIPPED / "spring-pendulum.yaml", *QUICK, "-o", tmp_path, code=0)
     heads, *rows = [line.split() for line in done.output.splitlines() if line.strip()]
     assert heads[:4] == ["scene", "method", "setting", "error"]
     assert len(rows) == 2
@@ -153,23 +145,20 @@ def test_several_scenes_are_compared_in_one_table(tmp_path: Path) -> None:
 
 
 def test_one_scene_that_has_no_solution_leaves_the_others(tmp_path: Path) -> None:
-    falling = tmp_path / "pole.yaml"
-    falling.write_text(
+    falling = filed(
+        tmp_path / "pole.yaml",
         "mbsym: 1\nname: pole\nbodies:\n"
         "  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\n"
-        "loads:\n  - generalized force: {x: 2*x**3}\ninitial: {x: {position: 1, velocity: 1}}\n"
+        "loads:\n  - generalized force: {x: 2*x**3}\ninitial: {x: {position: 1, velocity: 1}}\n",
     )
-    done = mbsym("tradeoff", falling, PENDULUM, "--time", 2, *QUICK[2:], "-o", tmp_path / "out")
-    assert done.exit_code == 3
+    done = invoked("tradeoff", falling, PENDULUM, "--time", 2, *QUICK[2:], "-o", tmp_path / "out", code=3)
     assert "there is no reference solution" in done.output + done.stderr
     assert "rk45" in done.output
 
 
 def test_two_files_of_one_name_have_folders_of_their_own(tmp_path: Path) -> None:
-    copy = tmp_path / PENDULUM.name
-    copy.write_text(PENDULUM.read_text(encoding="utf-8").replace("name: ", "name: Other "), encoding="utf-8")
-    done = mbsym("tradeoff", PENDULUM, copy, *QUICK, "-o", tmp_path / "out")
-    assert done.exit_code == 0, done.output + done.stderr
+    copy = filed(tmp_path / PENDULUM.name, PENDULUM.read_text(encoding="utf-8").replace("name: ", "name: Other "))
+    invoked("tradeoff", PENDULUM, copy, *QUICK, "-o", tmp_path / "out", code=0)
     written = [json.loads(x.read_text(encoding="utf-8")) for x in (tmp_path / "out").glob("*/tradeoff.json")]
     assert sorted(x["system"] for x in written) == ["Other Simple pendulum", "Simple pendulum"]
 
@@ -205,7 +194,7 @@ def test_plans_estimates_and_extremes_are_measured_once(
     out = () if "--plan" in words else ("-o", tmp_path / "out")
 
     def asked(*more: object) -> tuple[int, str, dict[str, bytes]]:
-        done = mbsym(command, PENDULUM, *options, *out, *more)
+        done = invoked(command, PENDULUM, *options, *out, *more)
         files = {x.name: x.read_bytes() for x in (tmp_path / "out").glob("*.csv")}
         return done.exit_code, done.output, files
 

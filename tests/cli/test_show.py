@@ -8,18 +8,17 @@ from pathlib import Path
 
 import pytest
 import sympy
-from click.testing import CliRunner, Result
-from conftest import SHIPPED, derived
+from click.testing import Result
+from conftest import SHIPPED, derived, filed, invoked
 
 import mbsym
 from mbsym.expressions.safe import UNBROKEN
 from mbsym.report.formulas_by_name import LANGUAGES, NAMES, accelerations, lines
 from mbsym_cli.console import HANGING, between_terms, wrapped
-from mbsym_cli.main import main
 
 
-def show(name: str, *words: str) -> Result:
-    return CliRunner().invoke(main, ["show", str(SHIPPED / f"{name}.yaml"), *words])
+def show(name: str, *words: str, code: int | None = None) -> Result:
+    return invoked("show", SHIPPED / f"{name}.yaml", *words, code=code)
 
 
 @pytest.mark.parametrize(
@@ -136,16 +135,14 @@ def test_everything_is_written_in_every_language(language: str) -> None:
 
 
 def test_help_names_everything_that_may_be_asked_for() -> None:
-    text = CliRunner().invoke(main, ["show", "--help"]).output
+    text = invoked("show", "--help").output
     assert all(f" {name} " in text.replace("\n", " ") for name in NAMES)
 
 
 def test_unknown_names_and_missing_results(tmp_path: Path) -> None:
-    result = show("simple-pendulum", "equatons")
-    assert result.exit_code == 2
+    result = show("simple-pendulum", "equatons", code=2)
     assert "did you mean 'equations'?" in result.stderr
-    result = show("simple-pendulum", "B", "T")
-    assert result.exit_code == 1
+    result = show("simple-pendulum", "B", "T", code=1)
     assert "B: the system has no inputs" in result.stderr
     assert result.stdout.startswith("T = ")
     assert show("cartesian-pendulum", "accelerations").exit_code == 1
@@ -159,23 +156,21 @@ def test_python_has_them_too() -> None:
 
 def test_letters_are_those_of_the_description_on_both_sides(tmp_path: Path) -> None:
     text = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
-    path = tmp_path / "pendulum.yaml"
-    path.write_text(text + "latex: {theta: '\\vartheta'}\n", encoding="utf-8")
-    done = CliRunner().invoke(main, ["show", str(path), "accelerations", "--latex"])
+    path = filed(tmp_path / "pendulum.yaml", text + "latex: {theta: '\\vartheta'}\n")
+    done = invoked("show", path, "accelerations", "--latex")
     assert done.stdout.startswith("\\ddot{\\vartheta} = "), done.output
     assert "\\theta" not in done.stdout
 
 
 def test_words_and_roots_may_be_pasted(tmp_path: Path) -> None:
     """lambda^2 + 2 z lambda + 1 = 0 with z = 1e-9: small numbers, words with signs that TeX reads."""
-    path = tmp_path / "slow.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "slow.yaml",
         "mbsym: 1\nname: slow\nparameters: {z: positive}\n"
         "linear system: {coordinates: [x], M: [[1]], D: [[2*z]], K: [[1]]}\nvalues: {z: 1e-9}\n",
-        encoding="utf-8",
     )
     shown = {
-        language: CliRunner().invoke(main, ["show", str(path), "eigenvalues", "conditions", f"--{language}"]).stdout
+        language: invoked("show", path, "eigenvalues", "conditions", f"--{language}").stdout
         for language in ("latex", "wolfram", "python")
     }
     assert "-1 \\cdot 10^{-9} + 1\\,\\mathrm{i}" in shown["latex"]
@@ -279,7 +274,7 @@ def test_a_body_has_its_place_and_a_frame_no_energy(tmp_path: Path) -> None:
     link = "{name: link, attached to: 0, rotation: {axes: [3], angles: [q]}, mass: m, mass centre: [a, 0, 0]}"
     tip = "{name: tip, attached to: link, connection point: [a, 0, 0], mass: 0}"
     file.write_text(f"mbsym: 1\nname: Arm\nparameters: {{m: positive, a: positive}}\nbodies: [{link}, {tip}]\n")
-    told = CliRunner().invoke(main, ["show", str(file), "tip"]).stdout
+    told = invoked("show", file, "tip").stdout
     assert "r_O = (a cos(q), a sin(q), 0)" in told.splitlines()
     assert "V_O = (0, a q', 0)" in told.splitlines()
     assert "T =" not in told
@@ -288,8 +283,7 @@ def test_a_body_has_its_place_and_a_frame_no_energy(tmp_path: Path) -> None:
 
 def test_equations_that_fill_screens_are_printed_where_they_are_asked_for() -> None:
     """Those of the satellite take several screens, as its paper says; their length and the names to ask by are told."""
-    told = show("satellite")
-    assert told.exit_code == 0
+    told = show("satellite", code=0)
     assert len(told.stdout) < 500
     assert " sigma\n" in told.stdout
     assert len(show("satellite", "sigma").stdout) > 2000

@@ -5,10 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from click.testing import CliRunner
-from conftest import SHIPPED
-
-from mbsym_cli.main import main
+from conftest import SHIPPED, filed, invoked
 
 PENDULUM = "double-pendulum"
 
@@ -17,11 +14,10 @@ def told(name: str, options: str, language: str, folder: Path, command: str = "s
     """Lines on both streams, without the names of files and commands to be pasted."""
     text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
     text = re.sub(r"^name:", f"language: {language}\nname:", text, count=1, flags=re.M)
-    file = folder / "scene.yaml"
-    file.write_text(text, encoding="utf-8")
+    file = filed(folder / "scene.yaml", text)
     words = [x.strip('"') for x in re.findall(r'"[^"]*"|\S+', options)]
-    done = CliRunner().invoke(main, [command, str(file), *words, "--format", "csv" if command == "simulate" else "json",
-                                     "--out", str(folder / "out")])  # fmt: skip
+    kind = "csv" if command == "simulate" else "json"
+    done = invoked(command, file, *words, "--format", kind, "--out", folder / "out")
     assert done.exit_code in (0, 3), done.output
     lines = [*done.stdout.splitlines(), *done.stderr.splitlines()]
     return [x.replace(str(folder), "") for x in lines if not x.startswith("mbsym simulate ")]

@@ -10,12 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 
 from mbsym.numerics import streamed
 from mbsym.simulation.sampling import Grid
-from mbsym_cli.main import main
 
 
 @pytest.mark.parametrize(
@@ -41,7 +39,7 @@ def both_ways(folder: Path, monkeypatch: pytest.MonkeyPatch, words: list[str]) -
     for name, most in (("streamed", 500), ("held", 10**9)):
         monkeypatch.setattr(request, "SHOWN", most)
         out = folder / name
-        done = CliRunner().invoke(main, ["simulate", *words, "-o", str(out)])
+        done = invoked("simulate", *words, "-o", out)
         files = {path.name: path.read_bytes() for path in out.iterdir() if path.suffix in (".csv", ".json")}
         del files[".mbsym.json"]
         found.append((done.exit_code, files))
@@ -100,8 +98,7 @@ def test_nothing_is_left_where_there_is_no_room(tmp_path: Path, monkeypatch: pyt
 
     monkeypatch.setattr(streamed.Stored, "append", full)
     words = ["simulate", str(SHIPPED / "simple-pendulum.yaml"), "--time", "10", "--samples", "30000", "-f", "csv"]
-    done = CliRunner().invoke(main, [*words, "-o", str(tmp_path / "out")])
-    assert done.exit_code == 1
+    done = invoked(*words, "-o", tmp_path / "out", code=1)
     assert "cannot be written" in done.output
     assert not list(tmp_path.iterdir())
 
@@ -112,8 +109,7 @@ def test_nothing_is_left_where_there_is_no_room(tmp_path: Path, monkeypatch: pyt
 )
 def test_what_needs_all_rows_at_once_says_so(tmp_path: Path, more: list[str], option: str) -> None:
     words = ["simulate", str(SHIPPED / "simple-pendulum.yaml"), "--time", "10", "--samples", "5000000", *more]
-    done = CliRunner().invoke(main, [*words, "-o", str(tmp_path / "out")])
-    assert done.exit_code == 2
+    done = invoked(*words, "-o", tmp_path / "out", code=2)
     assert "held in memory" in done.output
     assert option in done.output
     assert not list(tmp_path.iterdir())

@@ -8,17 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 
 from mbsym_cli import study
 from mbsym_cli.files import prevented
-from mbsym_cli.main import main
 from mbsym_cli.options import Options
-
-
-def called(*arguments: object) -> Result:
-    return CliRunner().invoke(main, list(map(str, arguments)))
 
 
 def record(path: Path) -> dict[str, Any]:
@@ -42,14 +36,13 @@ SPHERICAL = SHIPPED / "spherical-pendulum.yaml"
 def test_all_options_of_orbit_together(tmp_path: Path) -> None:
     """A conical pendulum turns with psi'^2 = g/(l cos theta): the period that is kept is another motion's."""
     common = ("orbit", SPHERICAL, "--period", "1.57", "--turns", "psi=1", "--set", "psi_dot=4", "--set", "theta=0.9")
-    usual = called(*common, "--out", tmp_path / "usual")
-    assert usual.exit_code == 0, usual.output
-    kept = called(*common, "--keep", "period", "--quiet", "--out", tmp_path / "kept")
+    invoked(*common, "--out", tmp_path / "usual", code=0)
+    kept = invoked(*common, "--keep", "period", "--quiet", "--out", tmp_path / "kept")
     assert (kept.exit_code, kept.stdout) == (0, ""), kept.output
     assert {path.name for path in (tmp_path / "kept").iterdir()} >= {"orbit.csv", "orbit.json"}
     assert record(tmp_path / "kept" / "orbit.json")["period"] == 1.57
     assert record(tmp_path / "usual" / "orbit.json")["period"] != 1.57
-    without = called(*common[:4], *common[6:], "--keep", "period", "--out", tmp_path / "without")
+    without = invoked(*common[:4], *common[6:], "--keep", "period", "--out", tmp_path / "without")
     assert without.output != kept.output
 
 
@@ -58,7 +51,7 @@ def test_all_options_of_floquet_together(tmp_path: Path) -> None:
     shaken = SHIPPED / "shaken-pendulum.yaml"
     words = {}
     for nu in (30, 60):
-        done = called("floquet", shaken, "--set", f"nu={nu}", "--quiet", "--out", tmp_path / str(nu))
+        done = invoked("floquet", shaken, "--set", f"nu={nu}", "--quiet", "--out", tmp_path / str(nu))
         assert (done.exit_code, done.stdout) == (0, ""), done.output
         words[nu] = json.dumps(record(tmp_path / str(nu) / "floquet.json"))
     assert "unstable" in words[30]
@@ -68,13 +61,12 @@ def test_all_options_of_floquet_together(tmp_path: Path) -> None:
 def test_all_options_of_lyapunov_together(tmp_path: Path) -> None:
     common = ("lyapunov", SHIPPED / "double-pendulum.yaml", "--time", 5, "--quiet")
     how = ("--count", 2, "--every", "1/20", "--tolerance", "1e-6")
-    done = called(*common, *how, "--set", "theta1=1/2", "--out", tmp_path)
+    done = invoked(*common, *how, "--set", "theta1=1/2", "--out", tmp_path)
     assert (done.exit_code, done.stdout) == (0, ""), done.output
     rows = (tmp_path / "lyapunov.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) - 1 == 100
     assert len(rows[0].split(",")) == 3
-    other = called(*common, *how, "--out", tmp_path / "other")
-    assert other.exit_code == 0
+    invoked(*common, *how, "--out", tmp_path / "other", code=0)
     assert rows[-1] != (tmp_path / "other" / "lyapunov.csv").read_text(encoding="utf-8").splitlines()[-1]
 
 
@@ -90,8 +82,7 @@ def test_all_options_of_lyapunov_together(tmp_path: Path) -> None:
 def test_all_that_is_wrong_is_said_and_nothing_written(
     arguments: tuple[str, ...], complaints: list[str], tmp_path: Path
 ) -> None:
-    done = called(arguments[0], SPHERICAL, *arguments[1:], "--out", tmp_path / "out")
-    assert done.exit_code == 2, done.output
+    done = invoked(arguments[0], SPHERICAL, *arguments[1:], "--out", tmp_path / "out", code=2)
     for option in complaints:
         assert f"\n{option}" in f"\n{done.stderr}"
     assert not (tmp_path / "out").exists()
@@ -110,6 +101,5 @@ def test_what_prevents_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 @pytest.mark.parametrize("name", ["=", "R=1", "a\nb", " "])
 def test_names_that_look_like_settings_are_unknown_ones(name: str) -> None:
-    result = called("trim", SHIPPED / "cart-pole.yaml", "--solve", name)
-    assert result.exit_code == 2, result.output
+    result = invoked("trim", SHIPPED / "cart-pole.yaml", "--solve", name, code=2)
     assert "error[unknown-name]" in result.output

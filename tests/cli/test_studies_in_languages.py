@@ -6,11 +6,9 @@ import re
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 
 from mbsym.report.messages import messages
-from mbsym_cli.main import main
 
 STUDIES = [
     ("lyapunov", "double-pendulum", "--time 40 --count 1"),
@@ -29,11 +27,10 @@ STUDIES = [
 
 def said(command: str, name: str, options: str, language: str, folder: Path) -> str:
     text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
-    path = folder / "d.yaml"
-    path.write_text(re.sub(r"^name:", f"language: {language}\nname:", text, count=1, flags=re.M), encoding="utf-8")
+    path = filed(folder / "d.yaml", re.sub(r"^name:", f"language: {language}\nname:", text, count=1, flags=re.M))
     out = ["--out", str(folder / "out")] if command != "groups" and name != "gravity-gradient" else []
     asked = [command, str(path), *options.split(), *out]
-    done = CliRunner().invoke(main, asked, env={"COLUMNS": "80"})
+    done = invoked(*asked, env={"COLUMNS": "80"})
     assert done.exit_code in (0, 3), done.output
     assert [line for line in done.stdout.splitlines()[1:] if len(line) > 80 and str(folder) not in line] == []
     return "\n".join(done.stdout.splitlines()[1:]).replace(str(folder), "")
@@ -51,9 +48,7 @@ def test_spanish_is_spoken(command: str, name: str, options: str, tmp_path: Path
 def test_a_refusal_is_in_the_language(tmp_path: Path) -> None:
     """No periodic motion near a guess: the reason, and what stands before it."""
     text = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8")
-    path = tmp_path / "d.yaml"
-    path.write_text(re.sub(r"^name:", "language: ru\nname:", text, count=1, flags=re.M), encoding="utf-8")
-    done = CliRunner().invoke(main, ["orbit", str(path), "--period", "2.6", "--set", "theta1=3"])
-    assert done.exit_code == 1
+    path = filed(tmp_path / "d.yaml", re.sub(r"^name:", "language: ru\nname:", text, count=1, flags=re.M))
+    done = invoked("orbit", path, "--period", "2.6", "--set", "theta1=3", code=1)
     assert "периодическое движение не найдено: нет сходимости; " in done.stderr
     assert re.search(r"\d шаг", done.stderr)

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import click
 import pytest
 from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 
 import mbsym
 from mbsym.expressions.place import Span
@@ -139,8 +139,7 @@ def test_pairs_of_options_are_told_with_the_rest_even_of_a_description_that_cann
     )
     assert run(study, "--time", 1, "--loud", "--out", tmp_path / "loud").exit_code == 0
     assert run(study, "--time", 1, "--shape", "flat", "--rows", 4, "--size", 1, "--out", tmp_path).exit_code == 0
-    wrong = tmp_path / "wrong.yaml"
-    wrong.write_text("mbsym: 1\n", encoding="utf-8")
+    wrong = filed(tmp_path / "wrong.yaml", "mbsym: 1\n")
     done = CliRunner().invoke(command_of(study), [str(wrong), "--rows", "4"], standalone_mode=False)
     assert "--rows goes with --size" in done.stderr
 
@@ -270,11 +269,11 @@ def test_an_option_that_needs_a_word_of_a_list() -> None:
 
 def test_a_run_in_python_gives_the_files_of_the_command(tmp_path: Path) -> None:
     command = ["run", str(PENDULUM), "--set", "l=3", "--format", "latex,json", "--out", str(tmp_path)]
-    assert CliRunner().invoke(main, command).exit_code == 0
+    assert invoked(*command).exit_code == 0
     files = mbsym.run(PENDULUM, formats=("latex", "json"), values={"l": 3}).files
     assert {"report.tex", "results.json", "fragments/stability.tex"} <= set(files)
     assert all((tmp_path / name).read_text(encoding="utf-8") == text for name, text in files.items())
-    printed = CliRunner().invoke(main, [*command, "--json"]).stdout
+    printed = invoked(*command, "--json").stdout
     assert printed == files["results.json"]
     with pytest.raises(ValueError, match="there is no problem 99"):
         mbsym.run(PENDULUM, problems=(1, 99))
@@ -328,8 +327,7 @@ def test_python_takes_a_request_or_its_fields() -> None:
 def test_an_option_that_cannot_be_read_was_given(words: str, said: list[str]) -> None:
     """It is complained of itself; nothing is said as if it had been left out, and what it does not go with is said."""
     command, name, *options = words.split()
-    done = CliRunner().invoke(main, [command, str(SHIPPED / f"{name}.yaml"), *options])
-    assert done.exit_code == 2
+    done = invoked(command, SHIPPED / f"{name}.yaml", *options, code=2)
     assert [text.split(": ")[0] for text in done.stderr.splitlines() if "error[" in text] == said, done.stderr
 
 

@@ -7,14 +7,13 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 
-def run(*words):
-    return CliRunner().invoke(main, ["symmetries", *words])
+def run(*words, code: int | None = None):
+    return invoked("symmetries", *words, code=code)
 
 
 @pytest.fixture(autouse=True)
@@ -24,8 +23,7 @@ def _at_the_root(monkeypatch, request):
 
 def test_a_constant_push_has_a_potential():
     """The cart pushed by the constant F: T - U - F x is conserved, which problem 7 knows, too."""
-    done = run("systems/cart-pendulum.yaml", "--json")
-    assert done.exit_code == 0
+    done = run("systems/cart-pendulum.yaml", "--json", code=0)
     data = json.loads(done.stdout)
     jsonschema.validate(data, schema("symmetries"))
     (one,) = data["symmetries"]
@@ -49,12 +47,11 @@ def test_the_table_says_what_is_proved():
 
 def test_where_others_are_not_excluded_it_is_said(tmp_path):
     """A valley that turns: sines of the time are not told apart from functions that depend on each other."""
-    path = tmp_path / "valley.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "valley.yaml",
         "mbsym: 1\nname: Valley\nparameters: {m: {sign: positive}, k: {sign: positive}, n: {sign: positive}}\n"
         "bodies:\n  - {name: b, attached to: 0, connection point: [x, y, 0], mass: m, coordinates: [x, y]}\n"
         "loads:\n  - force function: -k*(x*cos(n*t) + y*sin(n*t))**2/2\n",
-        encoding="utf-8",
     )
     done = run(str(path))
     assert (done.exit_code, "That there are no others is not proved." in done.stdout) == (1, True)
@@ -81,8 +78,7 @@ def test_a_system_of_matrices_has_no_lagrangian_here():
 
 
 def simulated(*words):
-    done = CliRunner().invoke(main, ["simulate", *words, "--time", "2", "--invariants", "--no-estimate", "-f", "csv"])
-    assert done.exit_code == 0, done.output
+    done = invoked("simulate", *words, "--time", "2", "--invariants", "--no-estimate", "-f", "csv", code=0)
     return done.stdout
 
 
@@ -111,8 +107,7 @@ loads:
 
 def test_what_holds_the_time_is_not_said_to_be_absent(tmp_path: Path) -> None:
     """m z' + m g t is an integral of xi = 1 with Gamma = -m g t: of a kind that is not looked for, and told so."""
-    file = tmp_path / "fall.yaml"
-    file.write_text(FALL, encoding="utf-8")
-    told = " ".join(CliRunner().invoke(main, ["symmetries", str(file)]).stdout.split())
+    file = filed(tmp_path / "fall.yaml", FALL)
+    told = " ".join(invoked("symmetries", file).stdout.split())
     assert "both free of the time" in told
     assert "Every other of this kind is" in told

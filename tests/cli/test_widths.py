@@ -6,12 +6,10 @@ import re
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import SHIPPED, filed, invoked
 
 from mbsym_cli.console import wrapped
-from mbsym_cli.main import main
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 WIDTH = 80
 
 COMMANDS = [
@@ -30,9 +28,9 @@ COMMANDS = [
 
 
 def called(words: tuple[str, ...], folder: Path, columns: str) -> str:
-    there = [str(SYSTEMS / word) if word.endswith(".yaml") else word for word in words]
+    there = [str(SHIPPED / word) if word.endswith(".yaml") else word for word in words]
     out = ["--out", str(folder / "out"), "--format", "json"] if words[0] == "run" else []
-    return CliRunner().invoke(main, [*there, *out], env={"COLUMNS": columns}).output
+    return invoked(*there, *out, env={"COLUMNS": columns}).output
 
 
 def is_formula(line: str) -> bool:
@@ -85,9 +83,8 @@ bodies:
 
 def test_complaints_are_wrapped_but_what_they_quote(tmp_path: Path) -> None:
     """The hint lists all keys of a body: 150 letters; the line of the file stays as it is, with its underlining."""
-    path = tmp_path / "w.yaml"
-    path.write_text(WRONG, encoding="utf-8")
-    told = {x: CliRunner().invoke(main, ["check", str(path)], env={"COLUMNS": x}).stderr for x in ("60", "")}
+    path = filed(tmp_path / "w.yaml", WRONG)
+    told = {x: invoked("check", path, env={"COLUMNS": x}).stderr for x in ("60", "")}
     quoted = "   5 |   - {name: p, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x], massx: 3}"
     for text in told.values():
         assert quoted in text.split("\n")
@@ -109,4 +106,4 @@ def test_complaints_are_wrapped_but_what_they_quote(tmp_path: Path) -> None:
 def test_check_speaks_the_language_of_the_description(language: str, said: str, tmp_path: Path) -> None:
     path = tmp_path / "p.yaml"
     path.write_text(WRONG.replace(", massx: 3", "").replace("name: P\n", f"name: P\nlanguage: {language}\n"), "utf-8")
-    assert CliRunner().invoke(main, ["check", str(path)]).stdout.endswith(f": {said}\n")
+    assert invoked("check", path).stdout.endswith(f": {said}\n")

@@ -6,6 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from conftest import filed
 from flint import fmpq
 
 import mbsym
@@ -67,8 +68,7 @@ constraints: [{relation: x**2 + y**2 + z**2 = 1}, {relation: x = p}]
 
 
 def found(folder: Path, text: str, name: str, low: str, high: str) -> Branches:
-    path = folder / "system.yaml"
-    path.write_text(text)
+    path = filed(folder / "system.yaml", text)
     system = mbsym.load(path, ()).system
     values = {key: x for key, x in rational_values(given_values(system, {})).items() if key != name}
     return branches(system, Axis(name, Fraction(low), Fraction(high)), values)
@@ -142,7 +142,6 @@ def test_damping_leaves_open_where_stability_changes_and_says_so(tmp_path: Path)
 
 def test_a_list_that_leaves_positions_out_is_not_called_complete(tmp_path: Path) -> None:
     """Of the two rests on the circle x = sin(1/2) none is found where equations are not algebraic."""
-    path = tmp_path / "cut.yaml"
-    path.write_text(CUT.replace("relation: x = p", "relation: x = sin(p)"))
+    path = filed(tmp_path / "cut.yaml", CUT.replace("relation: x = p", "relation: x = sin(p)"))
     listed = equilibria(mbsym.load(path, ()).system, {"p": Fraction(1, 2), "g": Fraction(1), "m": Fraction(1)})
     assert len(listed.equilibria) == 2 or not listed.complete

@@ -10,7 +10,7 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked, system_of
 
 from mbsym.mechanics.variables import ring_of
 from mbsym.numerics.closing import closed
@@ -21,8 +21,6 @@ from mbsym.numerics.extremes.singular_positions import SingularPositions, singul
 from mbsym.numerics.probes import RATIO, Ladder, Probe, scaled
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.schemas import schema
-from mbsym.source import read
-from mbsym_cli.main import main
 
 
 def four_bar(crank: str, coupler: str, rocker: str, ground: str, start: str) -> str:
@@ -66,8 +64,7 @@ initial: {r: 1, a: {position: 1, velocity: 1}}
 
 
 def begun(text: str) -> Scenario:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     return closed(scenario(system)).scenario
 
 
@@ -131,8 +128,7 @@ def test_rungs_close_their_loops_anew() -> None:
     assert np.max(np.abs(known.at(0.0, state).positions)) < 1e-9
     assert np.max(np.abs(known.at(0.0, state).velocities)) < 1e-9
     # A planted rung whose loop cannot be closed is left out and told.
-    system, _ = read(CHANGE_POINT.replace("{body: 0, point: [2*l", "{body: 0, point: [20*l"))
-    assert system is not None
+    system = system_of(CHANGE_POINT.replace("{body: 0, point: [2*l", "{body: 0, point: [20*l"))
     open_ = scenario(system)
     assert on_constraints(Ladder(RATIO, "l", (Probe(10.0, open_, open_.state),)), left_out) is None
     assert left_out == ["l times 1e+01: no state of the constraints was found there"]
@@ -150,10 +146,8 @@ def test_a_singular_matrix_of_the_tree_is_held_against_what_constraints_allow() 
 
 
 def test_accelerations_are_those_with_constraints(tmp_path: Path) -> None:
-    file = tmp_path / "s.yaml"
-    file.write_text(EQUAL, encoding="utf-8")
-    result = CliRunner().invoke(main, ["extremes", str(file), "--budget", "20", "--out", str(tmp_path), "--quiet"])
-    assert result.exit_code == 0, result.output
+    file = filed(tmp_path / "s.yaml", EQUAL)
+    result = invoked("extremes", file, "--budget", "20", "--out", tmp_path, "--quiet", code=0)
     assert "proved by rational arithmetic" in result.stdout
     whole = json.loads((tmp_path / "extremes.json").read_text(encoding="utf-8"))
     jsonschema.validate(whole, schema("extremes"))
@@ -162,6 +156,5 @@ def test_accelerations_are_those_with_constraints(tmp_path: Path) -> None:
     near = [r for r in whole["rows"] if r["subject"].startswith("distance from a") and r["quantity"] == "accelerations"]
     assert near
     assert min(r["digits"]["float32"] for r in near) < 3
-    refused = CliRunner().invoke(main, ["extremes", str(file), "--sequences"])
-    assert refused.exit_code == 2
+    refused = invoked("extremes", file, "--sequences", code=2)
     assert "sequences are ranked without constraints" in refused.stderr

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from conftest import system_of
 
 from mbsym.numerics.scenario import scenario
 from mbsym.simulation import Request, Simulation, simulate
-from mbsym.source import read
 
 HEAD = """
 mbsym: 1
@@ -47,8 +47,7 @@ initial: {q: {position: 1.2, velocity: 0}, x: 1, y: -1/2}
 
 
 def run(text: str, pivot: str, force: str, **how: Any) -> Simulation:
-    system, complaints = read(text.replace("PIVOT", pivot).replace("FORCE", force))
-    assert system is not None, list(complaints)
+    system = system_of(text.replace("PIVOT", pivot).replace("FORCE", force))
     return simulate(scenario(system), Request(time=1.5, samples=16, estimate=False, **how))
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import system_of
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Method, Run, Setting, Traits
@@ -22,7 +23,6 @@ from mbsym.report.figures.tradeoff_figure import work_precision
 from mbsym.report.runs.constrained_run_words import constraint_lines
 from mbsym.report.runs.tradeoff_table import tradeoff_csv
 from mbsym.simulation import Request, simulate
-from mbsym.source import read
 
 #: On the unit circle, from rest at height 0 in a field of 1: at angle a from the vertical v^2 = 2 cos a.
 PENDULUM = """
@@ -59,8 +59,7 @@ initial: {a: {position: 0, velocity: -1}, b: {position: 0, velocity: 1}, c: {pos
 
 
 def described(text: str) -> Scenario:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     return scenario(system)
 
 
@@ -180,8 +179,7 @@ initial: {a: {position: 1, velocity: -1}, b: 1, c: -2}
 @pytest.mark.parametrize(("method", "how"), [("rk4", {"step": 0.05}), ("dop853", {"tolerance": 1e-4})])
 def test_steps_that_go_over_a_singular_position_are_told(method: str, how: dict[str, float]) -> None:
     """A run with small steps is carried over it and names the time; one with long steps passes, and is told."""
-    system, _ = read(CHANGE_POINT)
-    assert system is not None
+    system = system_of(CHANGE_POINT)
     fine = simulate(scenario(system), Request(time=5.0, tolerance=1e-11, estimate=False))
     (when,) = fine.trajectory.work.singular
     assert not fine.stepped_over
@@ -194,8 +192,7 @@ def test_steps_that_go_over_a_singular_position_are_told(method: str, how: dict[
 
 def test_near_misses_are_not_called_singular() -> None:
     """The ground link is longer by a hundredth: the loop comes near a line and never lies in one."""
-    system, _ = read(CHANGE_POINT.replace("point: [2, 0, 0]}]", "point: [2.01, 0, 0]}]"))
-    assert system is not None
+    system = system_of(CHANGE_POINT.replace("point: [2, 0, 0]}]", "point: [2.01, 0, 0]}]"))
     found = simulate(scenario(system), Request(time=5.0, method="rk4", step=0.05, estimate=False))
     assert not found.stepped_over
     assert not found.trajectory.work.singular

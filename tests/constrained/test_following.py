@@ -17,6 +17,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from conftest import analysed
 from flint import arb, ctx
 
 from mbsym.analysis import approximation
@@ -27,15 +28,12 @@ from mbsym.problems.checks import EXACT, FAILED
 from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.nonholonomic import enclosed
 from mbsym.problems.stability.words import Word
-from mbsym.source import read
 
 TEXT = (Path(__file__).parent / "pulled-sleigh.yaml").read_text(encoding="utf-8")
 
 
 def described(text: str = TEXT) -> Analysis:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
-    return Analysis(system)
+    return analysed(text)
 
 
 @pytest.fixture(scope="module")

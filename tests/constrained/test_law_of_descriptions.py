@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import system_of
 
 from mbsym.analysis.resting import relative_equilibria
-from mbsym.source import read
 from tests.constrained.test_flow_on_the_manifold import analysed, apart, differences, numbers
 
 #: Of rods: a mass by its number, or a place on the ground.
@@ -243,8 +243,7 @@ def test_rests_in_all_descriptions(seed: int) -> None:
     net = Net(seed)
     lists, whole = {}, []
     for form in FORMS:
-        system, complaints = read(net.described(form))
-        assert system is not None, list(complaints)
+        system = system_of(net.described(form))
         found = relative_equilibria(system, {})
         if found.families or any(one.free for one in found.equilibria):
             return

@@ -10,6 +10,7 @@ import dataclasses
 from typing import Any
 
 import pytest
+from conftest import analysed
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.analysis.pipeline import Analysis
@@ -19,7 +20,6 @@ from mbsym.problems.constraints import analysis, integrability
 from mbsym.problems.stability.words import Because, Word
 from mbsym.report.plain_writer import Writer
 from mbsym.report.words.constraint_words import reduction_sentences
-from mbsym.source import read
 
 BEAD = """
 mbsym: 1
@@ -43,15 +43,9 @@ motion: {x: a, y: a}
 BY_RATE, BY_PLACE = "velocity: y*x_dot + x*y_dot = 0", "relation: x*y = a**2"
 
 
-def described(text: str) -> Analysis:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
-    return Analysis(system)
-
-
 def bead(k: str = "3", a: str = "2", c: str = "0", given: str = BY_RATE) -> Analysis:
     text = BEAD.replace("value: K", f"value: {k}").replace("value: A", f"value: {a}").replace("value: C", f"value: {c}")
-    return described(text.replace("GIVEN", given))
+    return analysed(text.replace("GIVEN", given))
 
 
 def test_the_matrices_are_those_of_the_leaf() -> None:
@@ -88,7 +82,7 @@ def test_it_is_said_in_symbols_too() -> None:
         "a: {sign: positive, value: A}", "a: positive"
     )
     text = text.replace("c: {sign: nonnegative, value: C}", "c: positive").replace("GIVEN", BY_RATE)
-    verdict = described(text).stability.verdict
+    verdict = analysed(text).stability.verdict
     assert (verdict.word, verdict.theorem) == (Word.ASYMPTOTIC_BUT_STEADY, "Kelvin-Chetaev, Lyapunov-Malkin")
     assert verdict.because(Because.OTHER_LEAF)
 
@@ -100,7 +94,7 @@ def test_a_part_that_decays_beside_one_that_does_not_is_stable() -> None:
     other = "  - {name: other, attached to: 0, connection point: [u, v, 0], coordinates: [u, v], mass: m}\n"
     springs = "  - spring: {coordinate: u, stiffness: k}\n  - spring: {coordinate: v, stiffness: k}"
     text = text.replace("loads:", other + "loads:\n" + springs)
-    verdict = described(text.replace("y: a}", "y: a, u: a, v: a}")).stability.numerical
+    verdict = analysed(text.replace("y: a}", "y: a, u: a, v: a}")).stability.numerical
     assert verdict is not None
     assert (verdict.word, verdict.theorem) == (Word.STABLE, "Lagrange-Dirichlet")
 
@@ -163,7 +157,7 @@ def test_what_is_not_integrable_has_no_leaf() -> None:
     text = text.replace("constraints:", "  - spring: {coordinate: z, stiffness: k}\nconstraints:")
     text = text.replace("GIVEN", "velocity: y*x_dot + x*y_dot = x*z_dot").replace("y: a}", "y: 0, z: 0}")
     text = text.replace("value: K", "value: 3").replace("value: A", "value: 2").replace("value: C", "value: 0")
-    found = described(text)
+    found = analysed(text)
     known = found.constraints.integrability
     assert known is not None
     assert known.word == "nonholonomic"
@@ -174,7 +168,7 @@ def test_what_is_not_integrable_has_no_leaf() -> None:
 def test_with_time_there_is_no_leaf() -> None:
     found = bead(given="velocity: y*x_dot + x*y_dot = 0*t + 0*a").constraints.integrability
     assert found is not None
-    moving = described(
+    moving = analysed(
         BEAD.replace("GIVEN", "velocity: y*x_dot + x*y_dot = a*m")
         .replace("value: K", "value: 3")
         .replace("value: A", "value: 2")
@@ -222,7 +216,7 @@ def test_a_wheel_that_runs_on_is_judged_alike_in_every_description(described_as:
     Without x the pendulum has  m l (l - m l/(2 m + J/r^2)) theta'' + c theta' + m g l theta = 0  near theta = 0: it
     comes to rest, and the wheel drifts.
     """
-    found = described(described_as.replace("c: positive}", "c: positive, v: real}"))
+    found = analysed(described_as.replace("c: positive}", "c: positive, v: real}"))
     assert found.stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC
     (part,) = found.stability.subsystems
     coefficients = part.characteristic
@@ -230,7 +224,7 @@ def test_a_wheel_that_runs_on_is_judged_alike_in_every_description(described_as:
 
 
 def test_a_wheel_that_stands_is_judged_without_a_family_in_the_description() -> None:
-    found = described(WHEEL.replace("x: {rate: v}, phi: {rate: -v/r}, ", ""))
+    found = analysed(WHEEL.replace("x: {rate: v}, phi: {rate: -v/r}, ", ""))
     assert found.stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC
 
 
@@ -254,7 +248,7 @@ def test_a_wheel_that_nothing_holds_does_not_come_to_rest(motion: str) -> None:
     # (m + J/R^2) x'' = 0: a disturbed velocity stays what it is, for ever.
     free = ROLLS.replace("  - damper: {coordinate: x, coefficient: c}\n", "")
     free = free.replace("OTHER", "w: {sign: real, value: 3}")
-    stability = described(free + f"motion: {motion}\n").stability
+    stability = analysed(free + f"motion: {motion}\n").stability
     assert stability.numerical is not None
     assert stability.verdict.word is stability.numerical.word
     assert not stability.verdict.word.asymptotic
@@ -280,7 +274,7 @@ motion: {x: 0, y: 0}
 def test_a_force_by_the_value_of_the_relation_lets_no_velocity_stay_near(sign: str) -> None:
     # x + R y = c is kept: m (1 + 1/R^2) x'' = k c, so x' = k c t/(m (1 + 1/R^2)) grows without bound from rest, however
     # small c is.  With c = 0 nothing acts.
-    stability = described(PUSHED.replace("SIGN", sign)).stability
+    stability = analysed(PUSHED.replace("SIGN", sign)).stability
     assert not stability.verdict.word.stable
     assert stability.numerical is not None
     assert not stability.numerical.word.stable
@@ -289,7 +283,7 @@ def test_a_force_by_the_value_of_the_relation_lets_no_velocity_stay_near(sign: s
 def test_a_wheel_with_a_damper_comes_to_rest() -> None:
     # (m + J/R^2) x'' + c x' = 0 with c > 0: the velocity decays, the place where it stops is another.
     damped = ROLLS.replace("OTHER", "c: {sign: positive, value: 1}")
-    stability = described(damped + "motion: {x: 0, phi: 0}\n").stability
+    stability = analysed(damped + "motion: {x: 0, phi: 0}\n").stability
     assert stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC
 
 
@@ -314,7 +308,7 @@ loads:
 motion: {{x: 0, y: 0}}
 {values}
 """
-    stability = described(text).stability
+    stability = analysed(text).stability
     assert stability.verdict.word is word
     assert stability.numerical is None or stability.numerical.word is word
     assert "problem 11" not in stability.verdict.explanation  # it does not take constraints
@@ -338,6 +332,6 @@ loads:
 {friction}
 motion: {{x: 3/5, y: 4/5, z: 0}}
 """
-    verdict = described(text).stability.numerical
+    verdict = analysed(text).stability.numerical
     assert verdict is not None
     assert verdict.word in words

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked, system_of
 
 import mbsym
 from mbsym.mechanics.constraints import dynamics as equations
@@ -17,8 +17,6 @@ from mbsym.numerics.methods.interface import compiled_kernel
 from mbsym.numerics.scenario import scenario
 from mbsym.report.targets import FORMATS
 from mbsym.simulation import Request, Simulation, simulate
-from mbsym.source import read
-from mbsym_cli.main import main
 
 #: A bob at the end of an arm without mass: no inertia belongs to q.
 ARM = """
@@ -63,8 +61,7 @@ initial: {u: 0, v: 0}
 
 
 def run(text: str, time: float, **how: Any) -> Simulation:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     return simulate(scenario(system), Request(time=time, samples=41, estimate=False, **how))
 
 
@@ -90,18 +87,16 @@ def test_a_matrix_without_a_zero_pivot_is_seen_to_be_singular() -> None:
 @pytest.mark.parametrize("text", [SUM.replace("u = 2*v", "u + v = 0"), ARM.replace("l, 0]}]", "l*0, 0]}]")])
 def test_what_stays_without_mass_is_refused(text: str, tmp_path: Path) -> None:
     """u - v, or the arm about a bob on its axis, moves no mass and no constraint holds it."""
-    file = tmp_path / "s.yaml"
-    file.write_text(text, encoding="utf-8")
+    file = filed(tmp_path / "s.yaml", text)
     words = ["simulate", str(file), "--time", "1", "--out", str(tmp_path / "out")]
-    result = CliRunner().invoke(main, words)
+    result = invoked(*words)
     assert result.exit_code in (2, 3), result.output
     assert "singular" in result.output + result.stderr
 
 
 def _rod_force(text: str) -> Any:
     """What the rod does to the bob at the start: lambda, as J is the identity in x and y."""
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     given = closed(scenario(system)).scenario
     point = np.array([0.0, *map(float, given.state)])
     return compiled_kernel(Dynamics(given), "multipliers")(point)

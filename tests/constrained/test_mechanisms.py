@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from conftest import reference, system_of
 from scipy.integrate import solve_ivp
 
 from mbsym.numerics.conservation import Standing
@@ -19,24 +19,17 @@ from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, simulate
 from mbsym.simulation.accurate import simulate_accurately
-from mbsym.source import load, read
 
 TESTS = Path(__file__).parents[1]
 
 
-def reference(name: str) -> Any:
-    return json.loads((TESTS / "references" / f"{name}.json").read_text(encoding="utf-8"))
-
-
 def shipped(name: str) -> Scenario:
-    system, complaints, _ = load(TESTS / "systems" / f"{name}.yaml")
-    assert system is not None, list(complaints)
+    system = system_of(TESTS / "systems" / f"{name}.yaml")
     return scenario(system)
 
 
 def described(text: str) -> Scenario:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     return scenario(system)
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.mechanics.constraints.dynamics import Chosen, constrained_dynamics
 from mbsym.mechanics.programs import constants
-
-SHIPPED = Path(__file__).parents[2] / "systems"
 
 
 def test_the_right_hand_side_of_the_bicycle_takes_no_more_than_1900_operations() -> None:

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.mechanics.constraints import expansion
 from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.problems.checks import FAILED
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 
 def _without_slopes(original: Callable[..., Any]) -> Callable[..., Any]:
@@ -50,7 +48,7 @@ def test_a_mistake_is_found(
     monkeypatch: pytest.MonkeyPatch, name: str, module: Any, function: str, mistake: Callable[..., Any]
 ) -> None:
     monkeypatch.setattr(module, function, mistake(getattr(module, function)))
-    analysis = mbsym.load(SYSTEMS / f"{name}.yaml")
+    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
     found = analysis.check("perturbed motion")
     assert found is not None
     assert found.outcome == FAILED
@@ -65,6 +63,6 @@ def test_forces_of_the_constraints_matter(monkeypatch: pytest.MonkeyPatch) -> No
         return replace(right, constant=tuple(x + scene.ring.one for x in right.constant))
 
     monkeypatch.setattr(perturbed, "projected", wrong)
-    analysis = mbsym.load(SYSTEMS / "cartesian-pendulum.yaml")
+    analysis = mbsym.load(SHIPPED / "cartesian-pendulum.yaml")
     with pytest.raises(mbsym.analysis.Unavailable):
         _ = analysis.equilibrium

@@ -23,7 +23,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from flint import arb, ctx, fmpq
 from hypothesis import assume, given
 
@@ -46,7 +46,6 @@ from mbsym.report.exports import fmu
 from mbsym.report.targets import FORMATS
 from mbsym.simulation import Request, simulate
 from mbsym.source import read
-from mbsym_cli.main import main
 from tests.properties import settings
 from tests.random_systems import coupled, mechanisms
 from tests.report.readers import unreadable
@@ -613,11 +612,9 @@ def test_bennett_s_condition_is_told_and_tried(b: int, satisfied: bool) -> None:
 )
 def test_what_cannot_move_is_not_run(words: str, tmp_path: Path) -> None:
     """a = 3, b = 5: no Bennett linkage.  It was led to a rigid place and its energy called conserved."""
-    path = tmp_path / "bennett-no.yaml"
-    path.write_text(case("bennett-no"), encoding="utf-8")
+    path = filed(tmp_path / "bennett-no.yaml", case("bennett-no"))
     command, *options = words.split()
-    done = CliRunner().invoke(main, [command, str(path), *options, "--out", str(tmp_path / "out")])
-    assert done.exit_code == 3, done.output
+    done = invoked(command, path, *options, "--out", tmp_path / "out", code=3)
     assert "error[no-freedom]" in done.output
     assert not (tmp_path / "out").exists()
     assert "nothing can move from q1 = 0" in done.output
@@ -630,8 +627,7 @@ def test_full_stretch_is_singular(tmp_path: Path) -> None:
     a mechanism of two freedoms, off its constraints, with exit code 0.
     """
     file = CASES / "held-at-full-stretch.yaml"
-    result = CliRunner().invoke(main, ["simulate", str(file), "--time", "1", "-v", "--out", str(tmp_path / "out")])
-    assert result.exit_code == 3
+    result = invoked("simulate", file, "--time", "1", "-v", "--out", tmp_path / "out", code=3)
     assert "their rank is 1) they stop at second order" in result.stderr
     assert "free velocities: at most 2 of 3" in " ".join(result.stdout.split())
 

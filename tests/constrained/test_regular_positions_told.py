@@ -9,7 +9,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import invoked, system_of
 
 import mbsym
 from mbsym.analysis.pipeline import Analysis
@@ -21,14 +21,12 @@ from mbsym.numerics.scenario import scenario
 from mbsym.problems.stability.words import Word
 from mbsym.simulation import Request, simulate
 from mbsym.source import read
-from mbsym_cli.main import main
 from tests.constrained.test_flow_on_the_manifold import apart, numbers
 from tests.random_systems import coupled
 
 
 def analysed(text: str) -> Analysis:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     return Analysis(system)
 
 
@@ -71,8 +69,7 @@ def test_rows_that_follow_on_the_constraints_alone(size: Fraction, rough: Fracti
 def test_both_rests_of_such_points_are_listed(start: str) -> None:
     """Hanging and upright, whatever branch the rest of the points' positions lie on; one of the two starts is given."""
     text = "\n".join(x for x in points(Fraction(1)).split("\n") if ":" in x and not x.startswith(start))
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     found = relative_equilibria(system, {})
     assert {x.values[1].value: x.verdict.word for x in found.equilibria} == {-1.0: Word.STABLE, 1.0: Word.UNSTABLE}
 
@@ -178,10 +175,7 @@ initial: {a: 0.2, b: 0.2, c: -0.2, e: -0.2}
 def test_rest_that_rows_hold_is_no_coarse_run(tmp_path: Path) -> None:
     """Roberval's balance rests at any angle, whatever the arms of equal weights; what moves it are roundings."""
     (tmp_path / "scales.yaml").write_text(SCALES)
-    done = CliRunner().invoke(
-        main, ["simulate", str(tmp_path / "scales.yaml"), "--time", "1", "--out", str(tmp_path / "o")]
-    )
-    assert done.exit_code == 0
+    done = invoked("simulate", tmp_path / "scales.yaml", "--time", "1", "--out", tmp_path / "o", code=0)
     assert "warning" not in done.output
     assert "at rest but for rounding" in done.output
     assert "energy  conserved (proved); largest drift" in done.output
@@ -203,6 +197,6 @@ def test_products_of_numbers_are_multiplied_out(tmp_path: Path) -> None:
     """``2*1000`` was written as ``2 1000``."""
     text = SQUARE % "x - 2*1000*y" + "motion: {x: 2*1000, y: 1}\n"
     (tmp_path / "one.yaml").write_text(text.replace("initial: {x: 1, y: 1}\n", ""))
-    done = CliRunner().invoke(main, ["run", str(tmp_path / "one.yaml"), "--out", str(tmp_path / "o"), "-p", "1-4"])
+    done = invoked("run", tmp_path / "one.yaml", "--out", tmp_path / "o", "-p", "1-4")
     assert "x = 2000" in done.output
     assert "2 1000" not in done.output

@@ -7,10 +7,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from conftest import system_of
 
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
-from mbsym.source import read
 
 BAR = "mass: 1, inertia about: mass centre, inertia: [0, {0}**2/12, {0}**2/12], mass centre: [{0}/2, 0, 0]"
 TURNS = "rotation: {{axes: [3], angles: [{0}]}}"
@@ -65,8 +65,7 @@ def test_rests_of_a_four_bar_in_three_descriptions(seed: int, spring: str) -> No
     loads = f"loads:\n  - uniform gravity: {{vector: [{gx}, {gy}, 0]}}\n{spring}"
     lists = []
     for how in ("joints", "bars", "cut"):
-        system, complaints = read(described(lengths, how, loads))
-        assert system is not None, list(complaints)
+        system = system_of(described(lengths, how, loads))
         lists.append(relative_equilibria(system, {}))
     first, *others = map(places, lists)
     assert len(first) >= 2

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from conftest import analysed, system_of
 
 import mbsym
 from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.stability.words import Because, Word
-from mbsym.source import read
 
 HERE = Path(__file__).parent
 SYSTEMS = HERE.parent.parent / "systems"
@@ -21,18 +21,12 @@ def place(name: str) -> Path:
     return SYSTEMS / name if (SYSTEMS / name).exists() else HERE / name
 
 
-def described(text: str) -> Analysis:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
-    return Analysis(system)
-
-
 def changed(name: str, *changes: tuple[str, str]) -> Analysis:
     text = (place(name)).read_text(encoding="utf-8")
     for old, new in changes:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
-    return described(text)
+    return analysed(text)
 
 
 #: Weave 4.292382536341..., capsize 6.024262015388... (Meijaard et al. 2007; tests/references/bicycle_whipple.json).
@@ -146,9 +140,9 @@ motion: {{a: 0, b: 0, c: 0}}
 
 
 def test_theorems_on_energy_hold_where_constraints_are_holonomic() -> None:
-    hanging = described(LINKS.format(end="-l", x="0")).stability.verdict
+    hanging = analysed(LINKS.format(end="-l", x="0")).stability.verdict
     assert (hanging.word, hanging.theorem) == (Word.STABLE, "Lagrange-Dirichlet")
-    standing = described(LINKS.format(end="l", x="0")).stability.verdict
+    standing = analysed(LINKS.format(end="l", x="0")).stability.verdict
     assert standing.word is Word.UNSTABLE
 
 
@@ -178,13 +172,13 @@ motion: {{a: 0, c: 0}}
 )
 def test_constraints_that_move_take_power(tie: str, law: EnergyLaw) -> None:
     """With J q' + j = 0 and j != 0 constraint forces do work: nothing is claimed about the energy."""
-    assert described(TIED.format(tie=tie)).balance.law is law
+    assert analysed(TIED.format(tie=tie)).balance.law is law
 
 
 def test_a_constraint_that_grows_with_time_is_not_judged() -> None:
     """b = exp(t) a^3: of third order at any time, and not small at all times alike."""
     tied = TIED.format(tie="relation: c = 2*a + a**3*exp(t)")
-    stage = described(tied).stage(6)
+    stage = analysed(tied).stage(6)
     assert stage.failure is not None
     assert "not known to be small at all times alike" in stage.failure.reason
 
@@ -213,7 +207,7 @@ def test_what_was_divided_by_must_not_vanish_at_the_values(p: str, word: Word) -
         "{m: positive, l: positive, g: positive}",
         f"{{m: 1, l: 1, g: 10, p: {{sign: real, value: {p}}}, q: {{sign: real, value: 1}}}}",
     )
-    found = described(text)
+    found = analysed(text)
     about = found.linearisation.constrained
     assert about is not None
     assert [str(x) for x in about.assumed] == ["p"]
@@ -231,8 +225,7 @@ def test_a_motion_that_keeps_its_constraints_only_under_a_condition_fails_no_che
     text = (SYSTEMS / "dish-sphere.yaml").read_text(encoding="utf-8")
     text = text.replace("value: 1, meaning: spin", "value: 2, meaning: spin")
     text = text.replace("alpha: 0, beta: 0, gamma: {rate: s}", f"alpha: 0, beta: 1/3, gamma: {{rate: {rate}}}")
-    system, complaints = read(text, "dish.yaml")
-    assert system is not None, complaints.sorted()
+    system = system_of(text, "dish.yaml")
     analysis = Analysis(system)
     outcomes = {one.name: one.outcome for one in analysis.checks}
     assert "FAILED" not in outcomes.values()

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 from hypothesis import given
 from jsonschema import Draft202012Validator
 from properties import settings
@@ -24,7 +23,6 @@ import mbsym
 from mbsym.diff import Kind, Renaming, diff
 from mbsym.report.results_json import render
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 FORMULAS = {
     "rotation", "angular_velocity", "velocity_origin", "velocity_mass_centre", "kinetic_energy", "A2", "A1", "A0",
@@ -54,10 +52,6 @@ def places(found: Any, inside: bool = False) -> Iterator[tuple[Any, Any]]:
                 yield found, key
         else:
             yield from places(value, within)
-
-
-def command(*arguments: object) -> Result:
-    return CliRunner().invoke(main, [str(x) for x in arguments])
 
 
 # --- nothing changed --------------------------------------------------------------------------------------------------
@@ -260,17 +254,16 @@ def test_what_no_formula_holds_is_compared(before: str, after: str, path: tuple[
 
 def test_the_command_checks_a_description_against_kept_results(tmp_path: Path) -> None:
     file, kept = SHIPPED / "ziegler.yaml", tmp_path / "ziegler"
-    assert command("run", file, "--format", "json", "--problems", "1-6", "--out", kept, "--quiet").exit_code == 0
-    same = command("diff", file, kept, "--check")
+    assert invoked("run", file, "--format", "json", "--problems", "1-6", "--out", kept, "--quiet").exit_code == 0
+    same = invoked("diff", file, kept, "--check")
     assert (same.exit_code, same.output.strip()) == (0, "ziegler: no change")
     content = json.loads((kept / "results.json").read_text(encoding="utf-8"))
     content["linearisation"]["K"][0][0] = "2*k + l*P"
     (kept / "results.json").write_text(json.dumps(content), encoding="utf-8")
-    changed = command("diff", file, kept, "--check")
-    assert changed.exit_code == 1
+    changed = invoked("diff", file, kept, "--check", code=1)
     assert "linear form K [theta1, theta1]: B - A = 2*l*P" in changed.output
-    assert command("diff", file, kept).exit_code == 0
-    told = json.loads(command("diff", file, kept / "results.json", "--check", "--json").output)
+    assert invoked("diff", file, kept).exit_code == 0
+    told = json.loads(invoked("diff", file, kept / "results.json", "--check", "--json").output)
     assert list(Draft202012Validator(schema("diff")).iter_errors(told)) == []
     assert told["systems"][0]["changes"][0]["difference"] == "2*l*P"
 
@@ -281,11 +274,10 @@ def test_folders_are_compared_system_by_system(tmp_path: Path) -> None:
     for name in ("ziegler", "simple-pendulum"):
         (folder / f"{name}.yaml").write_text((SHIPPED / f"{name}.yaml").read_text(encoding="utf-8"), encoding="utf-8")
     kept = tmp_path / "kept"
-    assert command("run", folder, "--format", "json", "-p", "1-5", "--out", kept, "--quiet").exit_code == 0
-    assert command("diff", folder, kept, "--check").exit_code == 0
+    assert invoked("run", folder, "--format", "json", "-p", "1-5", "--out", kept, "--quiet").exit_code == 0
+    assert invoked("diff", folder, kept, "--check").exit_code == 0
     (folder / "simple-pendulum.yaml").unlink()
-    done = command("diff", folder, kept, "--check")
-    assert done.exit_code == 1
+    done = invoked("diff", folder, kept, "--check", code=1)
     assert "simple-pendulum: only in B" in done.output
     assert "ziegler: no change" in done.output
 
@@ -294,18 +286,15 @@ def test_folders_are_compared_system_by_system(tmp_path: Path) -> None:
     "content", ["{", "[]", '{"format": 2, "coordinates": []}', '{"coordinates": []}', "[" * 100_000]
 )
 def test_what_cannot_be_read_is_code_2(content: str, tmp_path: Path) -> None:
-    bad = tmp_path / "results.json"
-    bad.write_text(content, encoding="utf-8")
+    bad = filed(tmp_path / "results.json", content)
     for pair in ((bad, SHIPPED / "ziegler.yaml"), (SHIPPED / "ziegler.yaml", bad), (tmp_path / "none", bad)):
-        done = command("diff", *pair)
-        assert done.exit_code == 2, done.output
+        done = invoked("diff", *pair, code=2)
         assert "internal error" not in done.output
 
 
 def test_a_description_with_errors_is_code_2(tmp_path: Path) -> None:
-    bad = tmp_path / "bad.yaml"
-    bad.write_text("mbsym: 1\nname: nothing\n", encoding="utf-8")
-    assert command("diff", bad, SHIPPED / "ziegler.yaml", "--check").exit_code == 2
+    bad = filed(tmp_path / "bad.yaml", "mbsym: 1\nname: nothing\n")
+    assert invoked("diff", bad, SHIPPED / "ziegler.yaml", "--check").exit_code == 2
 
 
 WHOLE = """
@@ -396,6 +385,6 @@ def test_a_body_that_is_called_like_a_property_keeps_its_name(tmp_path: Path) ->
         changed = text.replace("connection point: [0, -l1, 0]", f"connection point: {point}")
         changed = changed if name == "a" else changed.replace("motion: 1", "motion: 2")
         (tmp_path / f"{name}.yaml").write_text(changed, encoding="utf-8")
-    lines = command("diff", tmp_path / "a.yaml", tmp_path / "b.yaml").output.splitlines()
+    lines = invoked("diff", tmp_path / "a.yaml", tmp_path / "b.yaml").output.splitlines()
     assert any(line.startswith("  * energy velocity of the mass centre [1]: ") for line in lines), lines
     assert any(line.startswith("  * parameter motion value: ") for line in lines), lines

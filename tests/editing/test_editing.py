@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from conftest import system_of
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -176,8 +177,7 @@ def test_anything_may_be_written(text: str) -> None:
 
 def test_what_people_wrote_is_no_markdown() -> None:
     text = replaced("meaning: mass of the bob", 'meaning: "![x](http://a/b.png) <img src=y> [g](command:z) _k_ `c`"')
-    system, _ = read(text, "x.yaml")
-    assert system is not None
+    system = system_of(text, "x.yaml")
     told = explanation(*at(text.replace("    mass: m", "    mass: |m", 1)), Analysis(system))
     assert told is not None
     for one in ("![", "](", "<img", "[g]", " _k"):
@@ -186,8 +186,7 @@ def test_what_people_wrote_is_no_markdown() -> None:
 
 def test_a_formula_keeps_its_asterisks() -> None:
     text = replaced("rate: g/l", "rate: g*m/l*g")
-    system, _ = read(text, "x.yaml")
-    assert system is not None
+    system = system_of(text, "x.yaml")
     assert "`g*m/l*g`" in (_name("chi", Analysis(system)) or "")
 
 

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED, parsed
+from conftest import SHIPPED, filed, invoked, parsed
 from flint import fmpq
 
 import mbsym
@@ -25,7 +24,6 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.letters import Letters, Rewriter, letters_as, rewriter, size
 from mbsym.report.letters import in_letters, letters_of
 from mbsym.report.words.expansion_words import coefficients
-from mbsym_cli.main import main
 
 PARAMETERS = ("a", "b", "c", "k", "m", "l", "J")
 
@@ -277,16 +275,15 @@ def test_the_third_order_of_that_flow_is_in_the_paper_s_letters_too():
 
 def test_what_is_wrong_in_a_claim_is_not_told_in_the_letters_of_the_claim(tmp_path: Path) -> None:
     """2 T = (m l^2 + m k^2) q'^2 = (c + d) q'^2; claimed is c q'^2. "-d/2 = -d/2" would tell nothing."""
-    path = tmp_path / "pendulum.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "pendulum.yaml",
         "mbsym: 1\nname: Pendulum\nparameters: [m, l, k]\nabbreviations: {c: m*l**2, d: m*k**2}\nbodies:\n"
         "  - {name: a, attached to: 0, rotation: {axes: [3], angles: [q]}, mass: m, mass centre: [0, -l, 0],\n"
         "     inertia about: mass centre, inertia: [0, m*k**2, m*k**2]}\n"
         "claims:\n  - {claim: kinetic energy, equals: c*q_dot**2/2}\n",
-        encoding="utf-8",
     )
     words = ["run", str(path), "-v", "--format", "json", "--out", str(tmp_path / "out")]
-    printed = CliRunner().invoke(main, words, env={"COLUMNS": "200"}).output
+    printed = invoked(*words, env={"COLUMNS": "200"}).output
     _, _, claims = printed.partition("Claimed minus derived is")
     line = claims.strip().splitlines()[0]
     assert "m k^2" in line
@@ -301,8 +298,7 @@ def test_what_was_found_is_in_letters_that_were_asked_for_alone(asked: list[str]
     Of a condition that is long the finding has the label alone, and the polynomial whose coefficients these are.
     """
     words = ["run", str(SHIPPED / "satellite.yaml"), "--format", "latex,html", "--out", str(tmp_path / "out"), *asked]
-    done = CliRunner().invoke(main, words, env={"COLUMNS": "1000"})
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, env={"COLUMNS": "1000"}, code=0)
     finding, _, meanings = done.output.partition("Letters used here")
     assert held in finding
     assert ("v0 = " in meanings) == bool(asked)

@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from conftest import filed
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -61,8 +62,7 @@ def test_casadi_and_jax_take_inputs(pole: Analysis, tmp_path: Path) -> None:
             __import__(name)
         except ImportError:
             continue
-        path = tmp_path / f"exported_{name}.py"
-        path.write_text(text)
+        path = filed(tmp_path / f"exported_{name}.py", text)
         made = runpy.run_path(str(path))
         found = made["accelerations"](0.0, [0.0, THETA, 0.0, 0.0], made["parameters"](), [FORCE])
         assert [float(found[k]) for k in (0, 1)] == pytest.approx(accelerations(), rel=1e-6)
@@ -125,8 +125,7 @@ def test_names_that_code_would_take_for_its_own(tmp_path: Path) -> None:
     text = text.replace("coordinate: p,", "coordinate: u,").replace("y1: p", "y1: u")
     analysis = mbsym.loads(text, ())
     assert analysis.system.coordinates == ("u", "theta")
-    path = tmp_path / "exported_u.py"
-    path.write_text(python_module.render(analysis, (5,)))
+    path = filed(tmp_path / "exported_u.py", python_module.render(analysis, (5,)))
     made = runpy.run_path(str(path))
     found = made["rhs"](0.0, [0.0, THETA, 0.0, 0.0], made["DEFAULTS"], [FORCE])
     assert list(found[2:]) == pytest.approx(accelerations(), rel=1e-13)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 from jsonschema import Draft202012Validator
 from scipy.interpolate import CubicSpline
 
@@ -17,7 +17,6 @@ import mbsym
 from mbsym.numerics.inverse import NotLinear
 from mbsym.report.code import python_module
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"
 
@@ -117,23 +116,19 @@ def test_more_inputs_than_equations_and_inputs_that_bend() -> None:
 def test_the_command_writes_tells_and_refuses(tmp_path: Path) -> None:
     here = ["inverse", str(POLE), "--out", str(tmp_path), "--time", "2"]
     words = ["--motion", "p=-g*tan(1/5)*t**2/2", "--motion", "theta=1/5", "--samples", "5"]
-    done = CliRunner().invoke(main, [*here, *words])
-    assert done.exit_code == 0, done.output
+    done = invoked(*here, *words, code=0)
     assert "these inputs give it at all 5 times" in " ".join(done.output.split())
     rows = np.genfromtxt(tmp_path / "inputs.csv", delimiter=",", names=True)
     assert rows["F"][0] == pytest.approx(-90 * 9.8 * math.tan(0.2))
     assert rows["p_ddot"] == pytest.approx(-9.8 * math.tan(0.2) * np.ones(5))
     assert {"inputs.csv", "inputs.svg", "inputs.png"} <= {path.name for path in tmp_path.iterdir()}
-    none = CliRunner().invoke(main, [*here, "--motion", "p=t**2/2", "--motion", "theta=0"])
-    assert none.exit_code == 3
+    none = invoked(*here, "--motion", "p=t**2/2", "--motion", "theta=0", code=3)
     assert "no inputs give this motion" in " ".join(none.output.split())
-    wrong = CliRunner().invoke(main, [*here, "--motion", "p=step(t)", "--motion", "q=1"])
-    assert wrong.exit_code == 2
+    wrong = invoked(*here, "--motion", "p=step(t)", "--motion", "q=1", code=2)
     for told in ("which has a jump", "there is no coordinate called 'q'", "no motion is given for theta"):
         assert told in wrong.stderr
     other = ["inverse", str(POLE.with_name("simple-pendulum.yaml")), "--motion", "theta=t", "--time", "1"]
-    without = CliRunner().invoke(main, [*other, "--out", str(tmp_path / "none")])
-    assert without.exit_code == 1
+    without = invoked(*other, "--out", tmp_path / "none", code=1)
     assert "the description has no inputs" in without.stderr
 
 
@@ -159,7 +154,7 @@ loads: [{generalized force: {x: u, y: -y}}]
 def test_the_inputs_of_a_motion_as_json(theta, exact, tmp_path):
     """At a constant speed the friction 0.1 p' remains where the pole hangs; level it falls, whatever the force is."""
     words = ["--motion", "p=t", "--motion", f"theta={theta}", "--time", "2", "--samples", "3", "--json"]
-    done = CliRunner().invoke(main, ["inverse", str(POLE), *words, "--out", str(tmp_path)])
+    done = invoked("inverse", POLE, *words, "--out", tmp_path)
     assert done.exit_code == (0 if exact else 3), done.output
     found = json.loads(done.stdout)
     assert list(Draft202012Validator(schema("inverse")).iter_errors(found)) == []

@@ -7,6 +7,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 import yaml
+from conftest import system_of
 
 from mbsym.expressions.tree import ONE, text
 from mbsym.model.substitution import driven, held
@@ -33,9 +34,7 @@ outputs: {z: x + v, w: y_dot}
 
 
 def parsed(source: str) -> System:
-    system, complaints = read(source, "x")
-    assert system is not None, [one.message for one in complaints.items]
-    return system
+    return system_of(source, "x")
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 import mbsym
-from mbsym_cli.main import main
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"
 
@@ -86,13 +85,11 @@ def test_laws_hold_speeds_and_unit_vectors(variables: str) -> None:
 
 
 def test_an_angle_that_is_no_variable_is_refused_in_a_law(tmp_path: Path) -> None:
-    path = tmp_path / "spun.yaml"
-    path.write_text(SPUN, encoding="utf-8")
+    path = filed(tmp_path / "spun.yaml", SPUN)
     words = ["simulate", str(path), "--time", "1", "--input", "u=-k*c_dot", "--format", "csv", "--out", str(tmp_path)]
-    refused = CliRunner().invoke(main, words)
-    assert refused.exit_code == 2
+    refused = invoked(*words, code=2)
     assert "the angle 'c' in the law of u is no variable of this run" in refused.stderr
-    assert CliRunner().invoke(main, [*words, "--variables", "coordinates"]).exit_code == 0
+    assert invoked(*words, "--variables", "coordinates").exit_code == 0
 
 
 def test_every_wrong_law_is_told_at_once() -> None:
@@ -113,11 +110,9 @@ def _module(path: Path) -> ModuleType:
 
 
 def test_the_command_tells_and_agrees_with_the_generated_module(tmp_path: Path) -> None:
-    done = CliRunner().invoke(main, ["run", str(POLE), "--out", str(tmp_path / "r"), "--format", "python"])
-    assert done.exit_code == 0, done.output
+    done = invoked("run", POLE, "--out", tmp_path / "r", "--format", "python", code=0)
     words = ["--time", "1", "--set", "p=0", "--input", "F=20*sin(3*t) - p_dot", "--format", "csv"]
-    done = CliRunner().invoke(main, ["simulate", str(POLE), *words, "--out", str(tmp_path / "s")])
-    assert done.exit_code == 0, done.output
+    done = invoked("simulate", POLE, *words, "--out", tmp_path / "s", code=0)
     assert "inputs  F = 20*sin(3*t) - p_dot\n" in done.output
     assert '"inputs": {\n    "F": "20*sin(3*t) - p_dot"\n  }' in (tmp_path / "s" / "simulation.json").read_text()
     rows = np.genfromtxt(tmp_path / "s" / "trajectory.csv", delimiter=",", names=True)
@@ -139,8 +134,7 @@ def test_the_command_tells_and_agrees_with_the_generated_module(tmp_path: Path) 
 
 def test_the_command_complains_of_every_law(tmp_path: Path) -> None:
     words = ["--time", "1", "--set", "p=0", "--input", "G=1", "--input", "F=q", "--input", "F", "--out", str(tmp_path)]
-    done = CliRunner().invoke(main, ["simulate", str(POLE), *words])
-    assert done.exit_code == 2
+    done = invoked("simulate", POLE, *words, code=2)
     assert "there is no input called 'G'" in done.stderr
     assert "hint: the inputs are: F" in done.stderr
     assert "unknown name 'q'" in done.stderr
@@ -151,13 +145,12 @@ def test_the_command_complains_of_every_law(tmp_path: Path) -> None:
 def test_a_run_is_not_continued_with_another_law(tmp_path: Path) -> None:
     begin = ["simulate", str(POLE), "--set", "p=0", "--format", "csv", "--quiet"]
     first = [*begin, "--time", "1", "--input", "F=t", "--out", str(tmp_path / "a")]
-    assert CliRunner().invoke(main, first).exit_code == 0
+    assert invoked(*first).exit_code == 0
     on = [*begin, "--time", "2", "--continue", str(tmp_path / "a" / "simulation.json"), "--out", str(tmp_path / "b")]
-    assert CliRunner().invoke(main, [*on, "--input", "F=2*t"]).exit_code == 2
-    assert CliRunner().invoke(main, [*on, "--input", "F=t"]).exit_code == 0
+    assert invoked(*on, "--input", "F=2*t").exit_code == 2
+    assert invoked(*on, "--input", "F=t").exit_code == 0
 
 
 def test_other_commands_say_at_which_values(tmp_path: Path) -> None:
-    done = CliRunner().invoke(main, ["equilibria", str(POLE), "--set", "c=1"])
-    assert done.exit_code == 0
+    done = invoked("equilibria", POLE, "--set", "c=1", code=0)
     assert "for 'equilibria' the inputs are constant, as on the unperturbed motion: F = 0" in done.stderr

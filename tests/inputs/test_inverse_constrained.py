@@ -7,15 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked, system_of
 from scipy.integrate import solve_ivp
 
 import mbsym
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.numerics.inverse import inverse_dynamics
-from mbsym.source import read
-from mbsym_cli.main import main
 
 #: A pendulum whose bob is tied to its pivot: with q the others follow, and (m l^2 + J) q'' + m g l sin q = u.
 PENDULUM = """
@@ -52,8 +50,7 @@ initial: {x: 0, phi: 0}
 
 
 def found_for(text: str, **motion: str) -> Any:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
+    system = system_of(text)
     given = {name: parse_expression(one, Complaints(), lambda a, b: Span(1, 1, 1)) for name, one in motion.items()}
     return inverse_dynamics(system, given, {}, np.linspace(0.0, 2.0, 41))  # type: ignore[arg-type]
 
@@ -111,21 +108,17 @@ PULL = "force: {body: bob, point: [0, 1, 0], components: [u, 0, 0], axes: 0}"
 
 
 def test_the_command(tmp_path: Path) -> None:
-    file = tmp_path / "s.yaml"
-    file.write_text(PENDULUM, encoding="utf-8")
+    file = filed(tmp_path / "s.yaml", PENDULUM)
     words = ["inverse", str(file), "--time", "1", "--motion", "q=t**2", "--out", str(tmp_path / "out")]
-    result = CliRunner().invoke(main, words)
-    assert result.exit_code == 0, result.output + result.stderr
+    result = invoked(*words, code=0)
     assert "forces of constraints" in result.stdout
     assert (tmp_path / "out" / "inputs.csv").read_text().startswith("t,u,x,y,q")
-    wrong = CliRunner().invoke(main, [*words, "--motion", "x=t"])
-    assert wrong.exit_code == 1
+    wrong = invoked(*words, "--motion", "x=t", code=1)
     assert "does not satisfy coincide 1" in wrong.stderr
 
 
 def test_python_takes_the_motion_of_some(tmp_path: Path) -> None:
-    file = tmp_path / "s.yaml"
-    file.write_text(PENDULUM, encoding="utf-8")
+    file = filed(tmp_path / "s.yaml", PENDULUM)
     found = mbsym.inverse_dynamics(str(file), {"q": "t"}, [0.0, 1.0])
     assert found["u"] == pytest.approx([0.0, 19.62 * np.sin(1.0)], abs=1e-12)
     with pytest.raises(ValueError, match="no motion is given for x"):

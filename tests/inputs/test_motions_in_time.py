@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy
+from conftest import system_of
 
 import mbsym
 from mbsym.source import read
@@ -98,8 +99,7 @@ def test_a_body_turned_by_a_motor_as_the_square_of_time() -> None:
 
 def test_both_spellings_and_a_wrong_velocity() -> None:
     text = shaken("t**2/5", "h*exp(-t)", "theta + t/3")
-    system, _ = read(text, "x")
-    assert system is not None
+    system = system_of(text, "x")
     assert read(to_yaml(system), "y")[0] == system == read(to_text(system), "t")[0]
     given = text.replace("rotation:", "relative velocity: [2*t/5, -h*exp(-t), 0], rotation:")
     assert read(given, "x")[0] is not None

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import invoked
 from flint import fmpq
 from jsonschema import Draft202012Validator
 
@@ -26,7 +27,6 @@ from mbsym.maps.subdivision import ByBoundaries, End
 from mbsym.problems.stability.words import Word
 from mbsym.report.language import Language
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 from tests.report.readers import read_latex
 
 LINEAR = """mbsym: 1
@@ -56,9 +56,9 @@ def mapped(path: Path, low: int = -1, high: int = 1, **further: Any) -> BoxMap:
     return box_map(mbsym.load(path), axes, {}, **further)
 
 
-def called(path: Path, *words: object) -> Result:
+def called(path: Path, *words: object, code: int | None = None) -> Result:
     fixed = ["map", str(path), "--x", "a=-1:1", "--y", "b=-1:1", "--out", str(path.parent / "out")]
-    return CliRunner().invoke(main, [*fixed, *map(str, words)])
+    return invoked(*fixed, *words, code=code)
 
 
 def test_what_is_proved_is_true_and_the_rest_is_white(tmp_path: Path) -> None:
@@ -94,8 +94,7 @@ def test_a_lost_boundary_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert not found.check.holds
     assert {one.lack for one in found.cells} <= {Lack.WITHDRAWN, Lack.UNPROVED}
     assert Lack.WITHDRAWN in {one.lack for one in found.cells}
-    done = called(path, "--by", "boxes", "--format", "json")
-    assert done.exit_code == 1
+    done = called(path, "--by", "boxes", "--format", "json", code=1)
     assert "withdrawn, as the map's own check fails in box" in done.output
 
 
@@ -106,8 +105,7 @@ def test_an_arrangement_that_is_too_large_becomes_boxes(tmp_path: Path) -> None:
     random = Random(5)
     rows = [(random.randint(-999, 999) / 1000, random.randint(-999, 999) / 1000) for _ in range(200)]
     points.write_text("a,b\n" + "".join(f"{a},{b}\n" for a, b in [*rows, (2, 0)]))
-    done = called(path, "--locate", points, "--format", "json,tex")
-    assert done.exit_code == 0, done.output
+    done = called(path, "--locate", points, "--format", "json,tex", code=0)
     assert "no exact regions: a resultant of degree up to" in done.output
     assert "boxes instead" in done.output
     data = json.loads((tmp_path / "out" / "map.json").read_text())
@@ -166,15 +164,13 @@ def test_enclosures_where_boundaries_are_too_large(tmp_path: Path, monkeypatch: 
             assert proved.word is (Word.ASYMPTOTIC if box.y0 > 0 else Word.UNSTABLE)
     with pytest.raises(TooLargeError):
         mapped(path, of=Of.SIGNATURE)
-    done = called(path, "--by", "boxes")
-    assert done.exit_code == 0, done.output
+    done = called(path, "--by", "boxes", code=0)
     assert "theorems for enclosures" in done.output
 
 
 @pytest.mark.parametrize("language", ["en", "ru", "es"])
 def test_files_and_words(tmp_path: Path, language: str) -> None:
-    done = called(described(tmp_path, "[[a, 0], [0, b]]"), "--by", "boxes", "--language", language)
-    assert done.exit_code == 0, done.output
+    called(described(tmp_path, "[[a, 0], [0, b]]"), "--by", "boxes", "--language", language, code=0)
     out = tmp_path / "out"
     assert {x.name for x in out.iterdir() if x.name[0] != "."} == {
         "map.svg",
@@ -201,8 +197,7 @@ def test_signature_in_boxes(tmp_path: Path) -> None:
 @pytest.mark.parametrize("words", [["--x", "a=-1:1"], ["--x", "a=-1:1", "--y", "b=-1:1", "--z", "c=0:1"]])
 def test_boxes_are_of_planes(tmp_path: Path, words: list[str]) -> None:
     path = described(tmp_path, "[[a, 0], [0, b]]")
-    done = CliRunner().invoke(main, ["map", str(path), *words, "--by", "boxes", "--out", str(tmp_path / "out")])
-    assert done.exit_code == 2
+    done = invoked("map", path, *words, "--by", "boxes", "--out", tmp_path / "out", code=2)
     assert "boxes are of planes" in done.output
     assert not (tmp_path / "out").exists()
 
@@ -219,8 +214,7 @@ def test_files_of_an_interrupted_map_say_so(tmp_path: Path, monkeypatch: pytest.
 
     plain = Judge.__call__
     monkeypatch.setattr(Judge, "__call__", once)
-    done = called(path)
-    assert done.exit_code == 130
+    done = called(path, code=130)
     assert "interrupted; what was proved before that is written" in done.output
     data = json.loads((tmp_path / "out" / "map.json").read_text())
     assert data["interrupted"]

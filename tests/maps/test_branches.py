@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 from flint import fmpq
 from jsonschema import Draft202012Validator
 
@@ -29,7 +28,6 @@ from mbsym.report.maps.words import EVENTS, remark_words
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym.studies.equilibria.branches import rows
-from mbsym_cli.main import main
 from tests.report.readers import read_latex
 
 #: A point of mass 1 with x'' = f(x, p), and perhaps y'' = g.
@@ -64,9 +62,7 @@ values: {{m: 1, l: 2, g: 8}}
 
 def ball(folder: Path, f: str, g: str = "") -> Path:
     forces = f'x: "{f}"' + (f', y: "{g}"' if g else "")
-    path = folder / "ball.yaml"
-    path.write_text(BALL.format(second="y" if g else "0", names="x, y" if g else "x", forces=forces))
-    return path
+    return filed(folder / "ball.yaml", BALL.format(second="y" if g else "0", names="x, y" if g else "x", forces=forces))
 
 
 def found(path: Path, name: str, low: str, high: str, **given: str) -> Branches:
@@ -82,10 +78,6 @@ def told(one: Branches) -> list[tuple[float, tuple[Event, ...]]]:
 
 def counts(one: Branches) -> list[tuple[int, int]]:
     return [(x.counted.count, x.counted.stable) for x, _ in one.spans() if x.counted is not None]
-
-
-def invoke(*words: object) -> Result:
-    return CliRunner().invoke(main, [str(word) for word in words])
 
 
 #: f, where something happens in -1 <= p <= 1, what, and (equilibria, stable) from left to right.
@@ -176,8 +168,7 @@ def test_a_parameter_in_an_angle_is_told_and_no_set_of_singular_equilibria(tmp_p
 
 
 def test_a_rotating_pendulum_splits_at_the_rate_that_gravity_allows(tmp_path: Path) -> None:
-    path = tmp_path / "hoop.yaml"
-    path.write_text(HOOP.format(torque="0"))
+    path = filed(tmp_path / "hoop.yaml", HOOP.format(torque="0"))
     there = found(path, "Omega", "0", "5")  # Omega^2 = g/l = 4
     assert told(there) == [(2.0, (Event.PITCHFORK,))]
     assert there.criticals[0].sample == fmpq(2)
@@ -193,8 +184,7 @@ def test_a_rotating_pendulum_splits_at_the_rate_that_gravity_allows(tmp_path: Pa
 
 
 def test_an_imperfect_pitchfork_is_a_fold(tmp_path: Path) -> None:
-    path = tmp_path / "hoop.yaml"
-    path.write_text(HOOP.format(torque="m*l*g*cos(theta)/10"))
+    path = filed(tmp_path / "hoop.yaml", HOOP.format(torque="m*l*g*cos(theta)/10"))
     # w sin t cos t - sin t + a cos t = 0, w = Omega^2/4, a = 1/10: w = 1/cos t - a/sin t is extreme where tan^3 t = -a,
     # and w = (1 + a^(2/3))^(3/2) there
     expected = 2 * (1 + 10 ** (-2 / 3)) ** 0.75
@@ -254,7 +244,9 @@ def test_an_event_of_the_wrong_name_contradicts_the_counts(tmp_path: Path, monke
     there = found(ball(tmp_path, "p*x - x**3"), "p", "-1", "1")
     assert [there.critical(one).balance for one in there.criticals] == [False]
     assert [one.doubt for one in there.remarks] == [Doubt.MISMATCH]
-    done = invoke("equilibria", tmp_path / "ball.yaml", "--vary", "p=-1:1", "--format", "json", "--out", tmp_path / "o")
+    done = invoked(
+        "equilibria", tmp_path / "ball.yaml", "--vary", "p=-1:1", "--format", "json", "--out", tmp_path / "o"
+    )
     assert done.exit_code == 1
     assert "fold" not in done.stdout
 
@@ -275,10 +267,8 @@ def test_a_lost_equilibrium_contradicts_the_events(tmp_path: Path, monkeypatch: 
 
 
 def test_files_are_written_and_follow_their_schema(tmp_path: Path) -> None:
-    path = tmp_path / "hoop.yaml"
-    path.write_text(HOOP.format(torque="m*l*g*cos(theta)/10"))
-    done = invoke("equilibria", path, "--vary", "Omega=0:5", "--out", tmp_path / "out", "--language", "ru")
-    assert done.exit_code == 0, done.output
+    path = filed(tmp_path / "hoop.yaml", HOOP.format(torque="m*l*g*cos(theta)/10"))
+    invoked("equilibria", path, "--vary", "Omega=0:5", "--out", tmp_path / "out", "--language", "ru", code=0)
     data = json.loads((tmp_path / "out" / "branches.json").read_text())
     assert list(Draft202012Validator(schema("branches")).iter_errors(data)) == []
     assert [x["events"] for x in data["critical_values"]] == [["fold"]]
@@ -291,7 +281,7 @@ def test_files_are_written_and_follow_their_schema(tmp_path: Path) -> None:
 
 
 def test_the_formulas_of_the_text_are_latex(tmp_path: Path) -> None:
-    done = invoke("equilibria", ball(tmp_path, "p*x - x**3"), "--vary", "p=-1:1", "--format", "tex", "-o", tmp_path)
+    done = invoked("equilibria", ball(tmp_path, "p*x - x**3"), "--vary", "p=-1:1", "--format", "tex", "-o", tmp_path)
     assert done.exit_code == 0
     read_latex("fragments/branches.tex", (tmp_path / "branches.tex").read_text())
 
@@ -314,25 +304,21 @@ def test_the_formulas_of_the_text_are_latex(tmp_path: Path) -> None:
 )
 def test_what_is_wrong_is_told_at_once_and_nothing_written(words: list[str], codes: list[str], tmp_path: Path) -> None:
     given = words if words[0] == "--format" else [*words, "--out", str(tmp_path / "out")]
-    done = invoke("equilibria", SHIPPED / "orbital-gyrostat.yaml", *given)
-    assert done.exit_code == 2, done.output
+    done = invoked("equilibria", SHIPPED / "orbital-gyrostat.yaml", *given, code=2)
     assert all(code in done.output for code in codes), done.output
     assert not (tmp_path / "out").exists()
 
 
 def test_numbers_that_are_missing_are_all_named(tmp_path: Path) -> None:
-    path = tmp_path / "hoop.yaml"
-    path.write_text(HOOP.format(torque="0").replace("values: {m: 1, l: 2, g: 8}\n", ""))
-    done = invoke("equilibria", path, "--vary", "Omega=0:1", "--out", tmp_path / "out")
-    assert done.exit_code == 2
+    path = filed(tmp_path / "hoop.yaml", HOOP.format(torque="0").replace("values: {m: 1, l: 2, g: 8}\n", ""))
+    done = invoked("equilibria", path, "--vary", "Omega=0:1", "--out", tmp_path / "out", code=2)
     assert "m, l, g" in done.output
     assert "Omega" not in done.output.split("hint")[0]
 
 
 @pytest.mark.parametrize(("f", "why"), [("p - exp(x)", "exp"), ("x - sqrt(p)", "stands in a root")])
 def test_what_is_no_polynomial_is_refused_with_the_reason(f: str, why: str, tmp_path: Path) -> None:
-    done = invoke("equilibria", ball(tmp_path, f), "--vary", "p=1:2", "--out", tmp_path / "out")
-    assert done.exit_code == 1
+    done = invoked("equilibria", ball(tmp_path, f), "--vary", "p=1:2", "--out", tmp_path / "out", code=1)
     assert why in done.output
     assert not (tmp_path / "out").exists()
 
@@ -376,9 +362,8 @@ loads:
 motion: {x: 0, y: 0}
 values: {P: 1/4, c: 0}
 """
-    path = tmp_path / "circulatory.yaml"
-    path.write_text(text)
-    done = CliRunner().invoke(main, ["equilibria", str(path), "--vary", "P=0:1", "--out", str(tmp_path / "out")])
+    path = filed(tmp_path / "circulatory.yaml", text)
+    done = invoked("equilibria", path, "--vary", "P=0:1", "--out", tmp_path / "out")
     told = [re.split(r"  +", line.strip())[1:3] for line in done.output.splitlines() if " .. " in line]
     assert told == [["1", "0, 1 undecided"], ["1", "0"]]
     caption = (tmp_path / "out" / "branches.tex").read_text()

@@ -11,7 +11,8 @@ from random import Random
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.algebra.rationals import fraction
@@ -22,7 +23,6 @@ from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.words import Word
 from mbsym.report.maps.located import Locating
 from mbsym.studies.map.answer import remarks
-from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: {}\nparameters: {{a: {{sign: real}}, b: {{sign: real}}}}\nlinear system:\n  coordinates: [x]\n"
 
@@ -40,7 +40,7 @@ def mapped(path: Path) -> Map:
 
 def called(path: Path) -> Result:
     words = ["map", str(path), "--x", "a=-1:1", "--y", "b=-1:1", "--format", "json,png", "--out", str(path.parent)]
-    return CliRunner().invoke(main, words)
+    return invoked(*words)
 
 
 def test_an_isolated_point(tmp_path: Path) -> None:
@@ -100,8 +100,9 @@ def test_where_a_squared_determinant_vanishes_the_other_roots_are_looked_at(tmp_
 
     Below it lambda^2 = -(b + 1) > 0: one root to the right; above it roots are imaginary and zero, twice: y = c t.
     """
-    path = tmp_path / "system.yaml"
-    path.write_text(HEAD.format("squared").replace("[x]", "[x, y]") + "  K: [[b+1, -2*a], [-2*a, 0]]\n")
+    path = filed(
+        tmp_path / "system.yaml", HEAD.format("squared").replace("[x]", "[x, y]") + "  K: [[b+1, -2*a], [-2*a, 0]]\n"
+    )
     found = exact_map(
         mbsym.load(path), [Axis("a", Fraction(-2), Fraction(2)), Axis("b", Fraction(-2), Fraction(2))], {}
     )
@@ -123,10 +124,10 @@ def test_two_damped_coordinates_with_a_discriminant_of_degree_17(tmp_path: Path)
     """Greatest common divisors over fields of degree 22 made this run for minutes; counts at a third point of each
     region are those of NumPy's eigenvalues, where these are not near the axis."""
     rows = "[[-a+2*b+1, a-2*b-b**2], [a-2*b-b**2, 0]]"
-    path = tmp_path / "system.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "system.yaml",
         "mbsym: 1\nname: plane\nparameters: {a: {sign: real}, b: {sign: real}}\nlinear system:\n"
-        f"  coordinates: [x, y]\n  M: [[1, 0], [0, 1]]\n  D: {rows}\n  K: [[a+b, 0], [0, -b-1]]\n"
+        f"  coordinates: [x, y]\n  M: [[1, 0], [0, 1]]\n  D: {rows}\n  K: [[a+b, 0], [0, -b-1]]\n",
     )
     found = exact_map(mbsym.load(path), [Axis(name, Fraction(-2), Fraction(2)) for name in "ab"], {})
     assert found.check is not None
@@ -149,8 +150,9 @@ def test_two_damped_coordinates_with_a_discriminant_of_degree_17(tmp_path: Path)
 
 def test_the_signature_of_a_diagonal_stiffness(tmp_path: Path) -> None:
     """K = diag(a, b): its negative eigenvalues are the negative ones of a and b; on a = 0 or b = 0 one vanishes."""
-    path = tmp_path / "system.yaml"
-    path.write_text(HEAD.format("signature").replace("[x]", "[x, y]") + "  K: [[a, 0], [0, b]]\n")
+    path = filed(
+        tmp_path / "system.yaml", HEAD.format("signature").replace("[x]", "[x, y]") + "  K: [[a, 0], [0, b]]\n"
+    )
     axes = [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"]
     found = exact_map(mbsym.load(path), axes, {}, Of.SIGNATURE)
     for a in (Fraction(-1, 2), Fraction(0), Fraction(1, 2)):
@@ -162,8 +164,7 @@ def test_the_signature_of_a_diagonal_stiffness(tmp_path: Path) -> None:
     assert len({found.look(one) for one in found.regions}) == 3
     assert all(found.separates(one) or None in found.beside(one) for one in found.arcs)
     words = ["map", str(path), "--x", "a=-1:1", "--y", "b=-1:1", "--of", "signature", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, words)
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, code=0)
     for count in (0, 1, 2):
         assert f"degree of instability {count}" in done.stdout
     data = json.loads((tmp_path / "out" / "map.json").read_text())
@@ -244,11 +245,9 @@ def test_a_potential_of_higher_order_bounds_regions(
 
 
 def test_slices_of_it_are_alike(tmp_path: Path) -> None:
-    path = tmp_path / "system.yaml"
-    path.write_text(QUARTIC.replace("POTENTIAL", "(a - c)*x**4 + b*x**6"))
+    path = filed(tmp_path / "system.yaml", QUARTIC.replace("POTENTIAL", "(a - c)*x**4 + b*x**6"))
     words = ["map", str(path), "--x", "a=-1:1", "--y", "b=-1:1", "--z", "c=1/4:1/2", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, words)
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, code=0)
     assert "undecided" not in done.stdout
 
 
@@ -267,8 +266,7 @@ def test_a_sweep_says_the_same(tmp_path: Path, damping: int, stable: str) -> Non
     text = QUARTIC.replace("POTENTIAL", "a*x**4 + b*x**6")
     path.write_text(text + f"values: {{a: 1, b: 1, c: {damping}}}\n")
     words = ["sweep", str(path), "--vary", "a=-1:1:5", "--vary", "b=-1:1:5", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, [*words, "--format", "csv"])
-    assert done.exit_code == 0, done.output
+    invoked(*words, "--format", "csv", code=0)
     rows = [row.split(",") for row in (tmp_path / "out" / "sweep.csv").read_text().splitlines()]
     a, b, verdict = (rows[0].index(name) for name in ("a", "b", "verdict"))
     first_terms = {tuple(row): float(row[a]) or float(row[b]) for row in rows[1:]}

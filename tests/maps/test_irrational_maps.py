@@ -8,14 +8,14 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.maps.boxes import BoxMap, Method, box_map
 from mbsym.maps.result import Lack, Of
 from mbsym.maps.section import Axis, Fault, Unfit
 from mbsym.problems.stability.words import Word
-from mbsym_cli.main import main
 
 TEXT = """mbsym: 1
 name: plane
@@ -28,9 +28,7 @@ linear system:
 
 
 def described(folder: Path, stiffness: str, sign: str = "real") -> Path:
-    path = folder / "system.yaml"
-    path.write_text(TEXT.format(stiffness=stiffness, sign=sign))
-    return path
+    return filed(folder / "system.yaml", TEXT.format(stiffness=stiffness, sign=sign))
 
 
 def mapped(path: Path, low: int, high: int, depth: int = 8, of: Of = Of.STABILITY) -> BoxMap:
@@ -38,8 +36,8 @@ def mapped(path: Path, low: int, high: int, depth: int = 8, of: Of = Of.STABILIT
     return box_map(mbsym.load(path), axes, {}, of, depth=depth)
 
 
-def called(path: Path, *words: str) -> Result:
-    return CliRunner().invoke(main, ["map", str(path), *words, "--out", str(path.parent / "out")])
+def called(path: Path, *words: str, code: int | None = None) -> Result:
+    return invoked("map", path, *words, "--out", path.parent / "out", code=code)
 
 
 def test_sines_of_the_axes(tmp_path: Path) -> None:
@@ -103,15 +101,12 @@ def test_a_wrong_enclosure_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_the_command_and_what_it_refuses(tmp_path: Path) -> None:
     path = described(tmp_path, "[[cos(a) + b, 0], [0, 1]]")
-    done = called(path, "--x", "a=-1:1", "--y", "b=-1:1", "--format", "json")
-    assert done.exit_code == 0, done.output
+    done = called(path, "--x", "a=-1:1", "--y", "b=-1:1", "--format", "json", code=0)
     assert "the matrices hold what is no fraction of polynomials: cos(a); boxes instead" in done.output
     for words in (["--x", "a=-1:1"], ["--x", "a=-1:1", "--y", "b=-1:1", "--of", "signature"]):
-        done = called(path, *words)
-        assert done.exit_code == 2
+        done = called(path, *words, code=2)
         assert "no rational number" in done.output
-    done = called(described(tmp_path, "[[cos(a) + b*c, 0], [0, 1]]"), "--x", "a=-1:1", "--y", "b=-1:1")
-    assert done.exit_code == 2
+    done = called(described(tmp_path, "[[cos(a) + b*c, 0], [0, 1]]"), "--x", "a=-1:1", "--y", "b=-1:1", code=2)
     with pytest.raises(Unfit) as failure:
         mapped(path, -1, 1)
     assert [(one.fault, one.name) for one in failure.value.complaints] == [(Fault.MISSING, "c")]

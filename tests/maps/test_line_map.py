@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from flint import fmpq, fmpz_poly
 from jsonschema import Draft202012Validator
 
@@ -22,7 +22,6 @@ from mbsym.problems.stability.constant import constant_of
 from mbsym.problems.stability.words import Word
 from mbsym.report.maps.located import Locating
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 
 def mapped(name: str, axis: str, low: Any, high: Any, **settings: Any) -> Map:
@@ -91,12 +90,10 @@ def test_sines_and_cosines_of_a_fraction_of_pi_are_exact() -> None:
 
 
 def test_the_files_of_a_line(tmp_path: Path) -> None:
-    points = tmp_path / "points.csv"
-    points.write_text("mu\n0.01\n0.3\n")
+    points = filed(tmp_path / "points.csv", "mu\n0.01\n0.3\n")
     line = ["map", "systems/triangular-points.yaml", "--x", "mu=0:1/2"]
     words = [*line, "--locate", str(points), "--out", str(tmp_path)]
-    done = CliRunner().invoke(main, words)
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, code=0)
     assert "at 0.0385208965 (exactly: a root of a polynomial of degree 2" in done.stdout
     content = json.loads((tmp_path / "map.json").read_text())
     assert not list(Draft202012Validator(schema("map")).iter_errors(content))

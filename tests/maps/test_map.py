@@ -13,7 +13,8 @@ from random import Random
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import filed, invoked
 from flint import fmpq, fmpq_mat
 from jsonschema import Draft202012Validator
 
@@ -30,7 +31,6 @@ from mbsym.report.maps.located import Locating
 from mbsym.report.maps.words import _CONDITIONS, LACKS
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 from tests.conftest import needs_pdflatex
 from tests.report.readers import read_latex
 
@@ -210,8 +210,8 @@ def test_ctrl_c_keeps_what_is_proved() -> None:
 # --- the command ------------------------------------------------------------------------------------------------------
 
 
-def called(*words: object) -> Result:
-    return CliRunner().invoke(main, ["map", *map(str, words)])
+def called(*words: object, code: int | None = None) -> Result:
+    return invoked("map", *words, code=code)
 
 
 WORDS_OF_SATELLITE = ("systems/satellite.yaml", "--x", "alpha=-1:1", "--y", "gamma=0:1", "-s", "p1=2/5", "-s", "p2=1/5")
@@ -220,10 +220,8 @@ WORDS_OF_SATELLITE = ("systems/satellite.yaml", "--x", "alpha=-1:1", "--y", "gam
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder: Path = tmp_path_factory.mktemp("map")
-    points = folder / "points.csv"
-    points.write_text("name,gamma,alpha\none,0.5,1/2\ntwo,1/2,0\nthree,0.2,0\nfour,3,0\n")
-    done = called(*WORDS_OF_SATELLITE, "--out", folder, "--locate", points)
-    assert done.exit_code == 0, done.output
+    points = filed(folder / "points.csv", "name,gamma,alpha\none,0.5,1/2\ntwo,1/2,0\nthree,0.2,0\nfour,3,0\n")
+    done = called(*WORDS_OF_SATELLITE, "--out", folder, "--locate", points, code=0)
     assert "Lagrange-Dirichlet, Routh" in done.stdout
     return folder
 
@@ -284,18 +282,15 @@ def test_located_points(written: Path) -> None:
     ],
 )
 def test_what_is_wrong_is_said_at_once(words: tuple[str, ...], said: list[str], tmp_path: Path) -> None:
-    done = called("systems/satellite.yaml", *words, "--out", tmp_path / "out")
-    assert done.exit_code == 2, done.output
+    done = called("systems/satellite.yaml", *words, "--out", tmp_path / "out", code=2)
     for piece in said:
         assert piece in done.stderr
     assert not (tmp_path / "out").exists()
 
 
 def test_wrong_points_are_told_line_by_line(tmp_path: Path) -> None:
-    points = tmp_path / "points.csv"
-    points.write_text("alpha,gamma\n1,x\n1\n1/0,1e9999\n")
-    done = called(*WORDS_OF_SATELLITE, "--out", tmp_path / "out", "--locate", points)
-    assert done.exit_code == 2
+    points = filed(tmp_path / "points.csv", "alpha,gamma\n1,x\n1\n1/0,1e9999\n")
+    done = called(*WORDS_OF_SATELLITE, "--out", tmp_path / "out", "--locate", points, code=2)
     assert ":2: " in done.stderr
     assert ":3: " in done.stderr
     assert done.stderr.count(":4: ") == 2

@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 from flint import fmpq
 from jsonschema import Draft202012Validator
 
@@ -33,7 +33,6 @@ from mbsym.report.maps.tex import map_tex
 from mbsym.report.maps.words import rational_text, share, stem
 from mbsym.report.schemas import schema
 from mbsym.studies.map.answer import remarks
-from mbsym_cli.main import main
 
 #: x'' = p x - x^3 + q: one equilibrium, and three where 4 p^3 > 27 q^2.
 CUSP = """mbsym: 1
@@ -142,8 +141,7 @@ def test_points_of_numbers_of_equilibria(tmp_path: Path) -> None:
     (tmp_path / "points.csv").write_text("p,q\n3/4,0\n-1/2,1/2\n3/4,1/4\n3,0\n")
     words = ["map", tmp_path / "cusp.yaml", "--of", "equilibria", "--x", "p=-1:1", "--y", "q=-1:1", "--format", "json"]
     words += ["--locate", tmp_path / "points.csv", "--out", tmp_path / "out"]
-    done = CliRunner().invoke(main, [str(word) for word in words])
-    assert done.exit_code == 0, done.output
+    invoked(*words, code=0)
     rows = list(csv.DictReader(io.StringIO((tmp_path / "out" / "located.csv").read_text())))
     assert [row["verdict"] for row in rows] == ["3 equilibria, 2 stable", "1 equilibrium, 1 stable", "not counted", ""]
     assert [row["where"].split()[0] for row in rows] == ["region", "region", "arc", "outside"]

@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import filed, invoked
 from flint import fmpq
 from jsonschema import Draft202012Validator
 
@@ -29,7 +30,6 @@ from mbsym.problems.stability.words import Word
 from mbsym.report.maps.figure import page_names, panels
 from mbsym.report.maps.located import Locating
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 from tests.report.readers import read_latex
 
 HEAD = "mbsym: 1\nname: {name}\nparameters: [{parameters}]\n"
@@ -49,8 +49,7 @@ STRIP = HEAD.format(name="strip", parameters="x, y, z") + (
 
 
 def analysed(text: str, folder: Path) -> Any:
-    path = folder / "system.yaml"
-    path.write_text(text)
+    path = filed(folder / "system.yaml", text)
     return mbsym.load(path)
 
 
@@ -277,16 +276,14 @@ def test_ctrl_c_keeps_the_slices_that_are_done() -> None:
 # --- the command ------------------------------------------------------------------------------------------------------
 
 
-def called(*words: object) -> Result:
-    return CliRunner().invoke(main, ["map", *map(str, words)])
+def called(*words: object, code: int | None = None) -> Result:
+    return invoked("map", *words, code=code)
 
 
 def test_the_files_of_slices(tmp_path: Path) -> None:
-    points = tmp_path / "points.csv"
-    points.write_text("C,B,A\n1,1/2,3/4\n19/20,1/2,3/4\n3,1,1\n")
+    points = filed(tmp_path / "points.csv", "C,B,A\n1,1/2,3/4\n19/20,1/2,3/4\n3,1,1\n")
     words = ("--x", "A=0:2", "--y", "B=0:2", "--z", "C=9/10:11/10", "--locate", points, "--out", tmp_path)
-    done = called("systems/gravity-gradient.yaml", *words, "--language", "es")
-    assert done.exit_code == 0, done.output
+    called("systems/gravity-gradient.yaml", *words, "--language", "es", code=0)
     content = json.loads((tmp_path / "map.json").read_text())
     assert not list(Draft202012Validator(schema("map")).iter_errors(content))
     assert list(Draft202012Validator(schema("map")).iter_errors(content | {"slices": [{}]}))
@@ -308,12 +305,10 @@ def test_the_files_of_slices(tmp_path: Path) -> None:
 
 def test_what_does_not_fit_is_complained_of_at_once(tmp_path: Path) -> None:
     file = "systems/gravity-gradient.yaml"
-    done = called(file, "--x", "A=0:2", "--z", "D=2:1", "--out", tmp_path)
-    assert done.exit_code == 2
+    done = called(file, "--x", "A=0:2", "--z", "D=2:1", "--out", tmp_path, code=2)
     assert "--y" in done.output
     assert "no parameter called 'D'" in done.output
     assert "empty" in done.output
-    done = called(file, "--x", "A=0:2", "--y", "B=0:2", "--z", "A=0:1", "--out", tmp_path)
-    assert done.exit_code == 2
+    done = called(file, "--x", "A=0:2", "--y", "B=0:2", "--z", "A=0:1", "--out", tmp_path, code=2)
     assert "'A' is taken for two axes" in done.output
     assert not list(tmp_path.iterdir())

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 from flint import fmpq
 from jsonschema import Draft202012Validator
 
@@ -30,7 +30,6 @@ from mbsym.report.maps.figure import lettered, letters
 from mbsym.report.maps.words import onset_words
 from mbsym.report.schemas import schema
 from mbsym.studies.map.answer import borders_of_slices, remarks
-from mbsym_cli.main import main
 
 TEXT = """
 mbsym: 1
@@ -177,8 +176,7 @@ def test_what_is_written(tmp_path: Path) -> None:
     (tmp_path / "points.csv").write_text("q,p\n1/2,1/4\n0,0\n1/3,1/9\n0,1/2\n")
     words = ["map", str(tmp_path / "changing.yaml"), "--x", "q=-1:1", "--y", "p=-1:1", "-s", "s=0"]
     words += ["--format", "json,tex", "--locate", str(tmp_path / "points.csv"), "-o", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, words)
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, code=0)
     content = json.loads((tmp_path / "out" / "map.json").read_text())
     assert not list(Draft202012Validator(schema("map")).iter_errors(content))
     along = [x for one in content["arcs"] if one["soft_or_hard"] for x in one["soft_or_hard"]["along"]]

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from conftest import system_of
 from kinds_of_constraints import BODIES, KINDS
 
 from mbsym.algebra.failures import Constrained
@@ -19,13 +20,10 @@ from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import program_environment, ring_environment, ring_of
 from mbsym.model.constraints import Coincide, Rolling
 from mbsym.model.system import System, acceleration_name, velocity_name
-from mbsym.source import read
 
 
 def described(*kinds: str) -> System:
-    system, complaints = read(BODIES + "\n".join(f"  - {KINDS[kind]}" for kind in kinds))
-    assert system is not None, list(complaints)
-    return system
+    return system_of(BODIES + "\n".join(f"  - {KINDS[kind]}" for kind in kinds))
 
 
 def over_ring(system: System) -> tuple[Scene, Ring]:
@@ -133,8 +131,7 @@ constraints:
 
 def test_what_is_planar_has_two_rows_worked_out_by_hand() -> None:
     """l cos q1 + l cos(q1 + q2) - d and l sin q1 + l sin(q1 + q2); axes normal to the plane say nothing."""
-    system, _ = read(PLANAR)
-    assert system is not None
+    system = system_of(PLANAR)
     scene, ring = over_ring(system)
     rows = said_rows(scene)
     assert [row.name.label for row in rows] == ["coincide 1, component 1", "coincide 1, component 2"]

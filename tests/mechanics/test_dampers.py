@@ -6,6 +6,7 @@ from itertools import product
 from typing import Any
 
 import pytest
+from conftest import system_of
 
 import mbsym
 from mbsym.analysis import Analysis, Unavailable
@@ -158,8 +159,7 @@ def test_the_meaning_is_told_where_the_key_is_used():
 @pytest.mark.parametrize("damper", ["damper", "isotropic damper"])
 @pytest.mark.parametrize("write", [to_text, to_yaml])
 def test_both_spellings_keep_the_two_dampers_apart(damper: str, write: Any) -> None:
-    system, _ = read(DUMBBELL.format(damper=damper, ends=ENDS))
-    assert system is not None
+    system = system_of(DUMBBELL.format(damper=damper, ends=ENDS))
     again, complaints = read(write(system))
     assert again == system
     assert not complaints.errors

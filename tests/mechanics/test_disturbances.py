@@ -5,25 +5,17 @@ from __future__ import annotations
 import random
 
 import pytest
+from conftest import parsed
 from flint import arb, fmpq
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.point import Balls, Rationals
-from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import Expression
 from mbsym.mechanics.oracle import Dual, FirstOrder, Series, TaylorSeries
 
 NAMES = ("x", "y", "z")
 POLYNOMIAL = "(x - 2*y)**3 + x*y*z - z**2*(y - x)/7"
 RATIONAL = f"({POLYNOMIAL})/(x**2 + y**2 + 1) + sin(x - 2*y)*cos(z) - x*sin(z)**2"
 IRRATIONAL = f"sqrt(x**2 + y**2)*exp(-x) + log(1 + y**2) + atan(z*x) + sin(x*y) + sinh(z) + ({RATIONAL})"
-
-
-def parsed(text: str) -> Expression:
-    found = parse_expression(text, Complaints(), lambda start, end: Span(1, start + 1, end - start))
-    assert found is not None
-    return found
 
 
 def disturbed(source: random.Random, kind: type) -> dict[str, tuple[object, object]]:

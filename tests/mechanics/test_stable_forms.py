@@ -6,10 +6,10 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import SHIPPED, system_of
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.point import Balls, Rationals
@@ -29,16 +29,12 @@ from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.scenario import Specialised, scenario, substituted
-from mbsym.source import load
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 EPS = 2.0**-53
 
 
 def system(name: str) -> System:
-    found, complaints, _ = load(SYSTEMS / f"{name}.yaml")
-    assert found is not None, complaints
-    return found
+    return system_of(SHIPPED / f"{name}.yaml")
 
 
 def errors(code: Code, values: Sequence[float]) -> list[float]:

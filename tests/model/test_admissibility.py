@@ -10,11 +10,10 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 import pytest
+from conftest import parsed
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression
 from mbsym.model.admissibility import inertia_violation, offset_violation, symbolic_violation
 
@@ -75,12 +74,6 @@ def test_every_cloud_of_masses_is_possible(cloud: Sequence[tuple[Fraction, Fract
     tensor = (rows[0], rows[1], rows[2])
     assert inertia_violation(tensor) is None
     assert offset_violation(tensor, mass, (centre[0], centre[1], centre[2])) is None
-
-
-def parsed(source: str) -> Expression:
-    tree = parse_expression(source, Complaints(), lambda start, end: Span(1, start + 1, end - start))
-    assert tree is not None
-    return tree
 
 
 def triple(*sources: str) -> tuple[Expression, Expression, Expression]:

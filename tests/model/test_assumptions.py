@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from conftest import TESTS
+from conftest import TESTS, filed
 from hypothesis import given
 from hypothesis import strategies as st
 from properties import settings
@@ -145,8 +145,7 @@ def test_given_values_keep_the_assumptions(assumption: str, values: dict[str, An
 def test_values_of_the_command_line_keep_them_too(tmp_path: Path, command: str, setting: str, kept: bool) -> None:
     from mbsym_cli.main import main
 
-    path = tmp_path / "bead.yaml"
-    path.write_text(bead(["a > sqrt(2)"], values={"a": 3, "b": 1, "c": 0}, initial={"x": 0.1}))
+    path = filed(tmp_path / "bead.yaml", bead(["a > sqrt(2)"], values={"a": 3, "b": 1, "c": 0}, initial={"x": 0.1}))
     further = ["--time", "0.1", "--out", str(tmp_path / "out")] if command == "simulate" else []
     done = CliRunner().invoke(main, [command, str(path), "--set", setting, *further])
     assert done.exit_code == (0 if kept else 2), done.output

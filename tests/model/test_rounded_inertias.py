@@ -8,6 +8,7 @@ import random
 from fractions import Fraction
 
 import pytest
+from conftest import system_of
 
 import mbsym
 from mbsym.model.admissibility import (
@@ -147,8 +148,7 @@ def test_no_acceptance_makes_a_kinetic_energy_negative():
         system, complaints = read(LINK.format(inertia=f"{{tensor: {inertia}, accept: true}}", twist="0"))
         assert system is None
         assert complaints.errors[0].code == "bad-inertia"
-    accepted, _ = read(LINK.format(inertia=f"{{tensor: {PUMA_3}, accept: true}}", twist="0"))
-    assert accepted is not None
+    accepted = system_of(LINK.format(inertia=f"{{tensor: {PUMA_3}, accept: true}}", twist="0"))
     assert body_violation(accepted.bodies[0], {}) is not None
     assert not has_negative_energy(accepted.bodies[0], {})
 

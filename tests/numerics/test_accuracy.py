@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, STATEMENTS
 
 import mbsym
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate, contradicted
@@ -24,8 +23,6 @@ from mbsym.numerics.methods.tableaux import DOP853, RODAS5P
 from mbsym.numerics.trade.comparison import Comparison, Difference
 from mbsym.report.runs.simulation_words import error_json, error_lines, warnings
 from mbsym.simulation import Simulation
-
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 
 needs_extended = pytest.mark.skipif(not available("extended"), reason="this machine has no extended arithmetic")
 
@@ -118,7 +115,7 @@ SETTINGS: list[dict[str, Any]] = [
 @pytest.mark.parametrize(("case", "solution"), [("osc", oscillator), ("kepler", kepler), ("arm3", falling)])
 def test_estimates_are_true(case: str, solution: Solution, setting: dict[str, Any]) -> None:
     """Also where the tolerance is below what the arithmetic has: no run is compared with itself."""
-    run = mbsym.simulate(CASES / f"{case}.yaml", 6, estimate=True, **setting)
+    run = mbsym.simulate(STATEMENTS / f"{case}.yaml", 6, estimate=True, **setting)
     assert isinstance(run.error, ErrorEstimate)
     final, worst = true_errors(run, solution)
     rounding = run.error.rounding
@@ -146,7 +143,7 @@ def test_the_finest_run_is_judged_by_an_extrapolation(
 ) -> None:
     """No method has more digits; 160 bits have."""
     monkeypatch.setattr("mbsym.numerics.accuracy.PRECISE_COST", 30.0)
-    run = mbsym.simulate(CASES / f"{case}.yaml", 3, arithmetic="extended", tolerance=1e-19)
+    run = mbsym.simulate(STATEMENTS / f"{case}.yaml", 3, arithmetic="extended", tolerance=1e-19)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.against.scalar == "160 bits"
     final, worst = true_errors(run, solution)
@@ -157,7 +154,7 @@ def test_the_finest_run_is_judged_by_an_extrapolation(
 @needs_extended
 def test_the_finest_run_has_no_estimate_where_that_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mbsym.numerics.accuracy.PRECISE_COST", 1e-3)
-    run = mbsym.simulate(CASES / "osc.yaml", 1, arithmetic="extended", tolerance=1e-19)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 1, arithmetic="extended", tolerance=1e-19)
     assert run.error == NoEstimate(Lacking.FINEST)
     assert list(error_lines(run.error)) == [f"not estimated: {Lacking.FINEST.value}"]
     assert error_json(run.error).available is False
@@ -171,7 +168,7 @@ def test_without_finer_arithmetic_a_clamped_tolerance_is_not_compared_with_itsel
     """1e-16 and 1e-18 are one run in float64: their difference, 0, is no error."""
     monkeypatch.setattr("mbsym.numerics.accuracy.PRECISE_COST", 30.0)
     monkeypatch.setattr("mbsym.numerics.accuracy.available", lambda scalar: scalar != "extended")
-    run = mbsym.simulate(CASES / f"{case}.yaml", 6, tolerance=tolerance)
+    run = mbsym.simulate(STATEMENTS / f"{case}.yaml", 6, tolerance=tolerance)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.against.scalar == "160 bits"
     final, worst = true_errors(run, solution)
@@ -185,26 +182,26 @@ def test_a_planted_comparison_of_a_run_with_itself_is_found(monkeypatch: pytest.
         "mbsym.numerics.accuracy._candidates",
         lambda dynamics, found, method, scalar, completed: iter([(method, scalar, found.setting)]),
     )
-    witnessed = mbsym.simulate(CASES / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
+    witnessed = mbsym.simulate(STATEMENTS / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
     final, _ = true_errors(witnessed, kepler)
     assert isinstance(witnessed.error, ErrorEstimate)
     assert final / 2 <= witnessed.error.final, "the witness finds it out"
     monkeypatch.setattr("mbsym.numerics.accuracy.WITNESSES", {})
-    alone = mbsym.simulate(CASES / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
+    alone = mbsym.simulate(STATEMENTS / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
     assert isinstance(alone.error, ErrorEstimate)
     assert not final / 2 <= alone.error.final
 
 
 def test_without_finer_arithmetic_a_coarse_run_is_judged_by_a_finer_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mbsym.numerics.accuracy.available", lambda scalar: scalar != "extended")
-    coarser = mbsym.simulate(CASES / "osc.yaml", 6, tolerance=1e-8).error
+    coarser = mbsym.simulate(STATEMENTS / "osc.yaml", 6, tolerance=1e-8).error
     assert isinstance(coarser, ErrorEstimate)
     assert (coarser.against.scalar, coarser.against.setting.tolerance) == ("float64", pytest.approx(1e-10))
 
 
 def test_a_pulse_that_was_stepped_over_is_noticed() -> None:
     """x(10) = cos 10 + sqrt(pi) sin 5 by the impulse 1000 * 0.001 * sqrt(pi); the run has cos 10."""
-    run = mbsym.simulate(CASES / "pulse.yaml", 10, estimate=True)
+    run = mbsym.simulate(STATEMENTS / "pulse.yaml", 10, estimate=True)
     truth = np.cos(10) + np.sqrt(np.pi) * np.exp(-1e-6 / 4) * np.sin(5)
     assert isinstance(run.error, ErrorEstimate)
     if abs(run["x"][-1] - truth) > 1e-3:
@@ -216,7 +213,7 @@ def test_a_pulse_that_was_stepped_over_is_noticed() -> None:
 
 def test_what_rests_by_symmetry_is_measured_by_the_scene() -> None:
     """The cart under two opposite pendulums stays where it is: rounding of it is no chaos."""
-    run = mbsym.simulate(CASES / "symmetric_cart.yaml", 10, estimate=True)
+    run = mbsym.simulate(STATEMENTS / "symmetric_cart.yaml", 10, estimate=True)
     assert isinstance(run.error, ErrorEstimate)
     by_name = {q.name: q for q in run.error.quantities}
     assert by_name["x"].rests
@@ -247,7 +244,7 @@ initial: {x: 1/2}
 
 def test_sizes_are_those_of_the_whole_motion() -> None:
     """At whole periods the velocity of an oscillator is nearly 0, which is no size of it."""
-    run = mbsym.simulate(CASES / "osc.yaml", 4 * np.pi, samples=3, estimate=True)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 4 * np.pi, samples=3, estimate=True)
     assert isinstance(run.error, ErrorEstimate)
     assert [q.size for q in run.error.quantities] == pytest.approx([1, 1], rel=1e-3)
     assert run.error.largest < 1e-8
@@ -273,7 +270,7 @@ def test_an_estimate_that_a_conserved_energy_belies_is_withdrawn() -> None:
 
 
 def test_a_coarse_run_is_called_so() -> None:
-    run = mbsym.simulate(CASES / "osc.yaml", 100, method="rk4", step=1.0, every=1.0, estimate=True)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 100, method="rk4", step=1.0, every=1.0, estimate=True)
     final, worst = true_errors(run, oscillator, 101)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.final == pytest.approx(final, rel=1e-6)
@@ -336,7 +333,7 @@ def test_a_method_that_is_wrong_itself_is_not_judged_by_itself(tableau: Any, mon
     """Planted: weights that are too large, so that all its runs solve x' = (1 + 1e-5) f, or nearly, and agree."""
     wrong = replace(tableau, weights=tuple(weight * Fraction(100_001, 100_000) for weight in tableau.weights))
     monkeypatch.setitem(METHODS, tableau.name, Landing(RungeKutta(wrong)))
-    run = mbsym.simulate(CASES / "osc.yaml", 6, method=tableau.name, estimate=True)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 6, method=tableau.name, estimate=True)
     final, worst = true_errors(run, oscillator)
     assert worst > 1e-6
     assert isinstance(run.error, ErrorEstimate)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import system_of
 from flint import arb, arb_mat, ctx, fmpq
 
 import mbsym
@@ -21,7 +22,6 @@ from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import Setting, machine_code
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.source import load
 
 ROOT = Path(__file__).parents[2]
 BITS = 300
@@ -40,8 +40,7 @@ def text(name: str, parameters: str, bodies: str, loads: str, initial: str) -> S
 
 
 def given_of(name: str, **values: F) -> Scenario:
-    found, complaints, _ = load(ROOT / "systems" / f"{name}.yaml")
-    assert found is not None, complaints
+    found = system_of(ROOT / "systems" / f"{name}.yaml")
     return scenario(found, {key: Number(value) for key, value in values.items()}, assumed=False)
 
 

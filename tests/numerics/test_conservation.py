@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, STATEMENTS, filed
 
 import mbsym
 from mbsym.numerics.accuracy import Lacking, NoEstimate
@@ -17,8 +17,6 @@ from mbsym.report.runs.simulation_words import conservation_line, energy_lines, 
 from mbsym.report.runs.summary import method_lines, result_lines
 from mbsym.report.viewer.motion import doubts, run_sentences
 from mbsym.simulation import Simulation
-
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 
 FORCED = """
 mbsym: 1
@@ -42,15 +40,14 @@ initial: {x: {position: 1, velocity: 0.3}, y: {position: 0.2, velocity: -0.4}}
 
 
 def particle(load: str, folder: Path, time: float = 5.0, **values: object) -> Simulation:
-    path = folder / "particle.yaml"
-    path.write_text(PARTICLE.replace("LOAD", load), encoding="utf-8")
+    path = filed(folder / "particle.yaml", PARTICLE.replace("LOAD", load))
     return mbsym.simulate(path, time, values=values, invariants=True)  # type: ignore[arg-type]
 
 
 def test_a_late_pulse_and_a_soft_contact_do_work() -> None:
     """1000 N for about 2 ms at t = 5; a ground that takes energy when it is pressed in: neither keeps the energy."""
     for case in ("pulse", "contact_energy"):
-        run = mbsym.simulate(CASES / f"{case}.yaml", 10)
+        run = mbsym.simulate(STATEMENTS / f"{case}.yaml", 10)
         assert run.conservation.standing is Standing.CHANGING, case
         assert "conserved (" not in conservation_line(run.conservation)
         assert GeneralizedEnergy.from_result(run.conservation, is_="T2 - T0 - U").conserved is False
@@ -58,7 +55,7 @@ def test_a_late_pulse_and_a_soft_contact_do_work() -> None:
 
 def test_the_pulse_does_work_before_it_comes() -> None:
     """At t = 0.1 the force is exp(-24 million) of its peak, and no rounding: the energy of the system changes."""
-    run = mbsym.simulate(CASES / "pulse.yaml", 0.1)
+    run = mbsym.simulate(STATEMENTS / "pulse.yaml", 0.1)
     assert run.conservation.change < 1e-9
     assert run.conservation.standing is Standing.CHANGING
 
@@ -156,7 +153,7 @@ def test_nothing_but_a_proof_stands_against_a_run() -> None:
 
 def test_a_proof_that_a_run_breaks_is_told_as_a_mistake_of_the_run() -> None:
     """Steps of a sixth of a period: the energy of an oscillator is conserved, but not by this run."""
-    run = mbsym.simulate(CASES / "osc.yaml", 100, method="rk4", step=1.0, every=1.0)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 100, method="rk4", step=1.0, every=1.0)
     assert run.conservation.standing is Standing.PROVED
     assert run.conservation.broken
     assert any("does not keep it" in text for text in warnings(run.conservation, run.error))
@@ -164,7 +161,7 @@ def test_a_proof_that_a_run_breaks_is_told_as_a_mistake_of_the_run() -> None:
 
 def test_scales_are_those_of_the_motion() -> None:
     """Sampled at whole periods an oscillator seems to rest: the drift is still a part of its energy."""
-    run = mbsym.simulate(CASES / "osc.yaml", 2 * np.pi, samples=2)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 2 * np.pi, samples=2)
     assert run.conservation.scale == pytest.approx(0.5, rel=1e-3)
     assert run.conservation.change < 1e-9
 
@@ -180,7 +177,7 @@ def test_words_of_each_standing() -> None:
 
 def test_an_oscillator_whose_spring_is_a_given_force_is_not_simply_told_to_lose_energy() -> None:
     """x'' = -x conserves x'^2/2 + x^2/2; T - U is x'^2/2 where -x is no spring but a generalised force."""
-    spring = mbsym.simulate(CASES / "osc.yaml", 1)
+    spring = mbsym.simulate(STATEMENTS / "osc.yaml", 1)
     assert [str(what).startswith("conserved (proved)") for _, what in energy_lines(spring)] == [True]
     ((_, what),) = energy_lines(mbsym.simulate(mbsym.loads(FORCED), 1))
     assert str(what).startswith("not conserved")
@@ -192,12 +189,12 @@ def test_what_a_change_is_divided_by_is_said() -> None:
 
     "Largest relative change 1.0e+06" was told of it.  The energy at the end is exp(-t/500)/2 but for 1e-6 of it.
     """
-    run = mbsym.simulate(CASES / "creeping-energy.yaml", 2500, estimate=False)
+    run = mbsym.simulate(STATEMENTS / "creeping-energy.yaml", 2500, estimate=False)
     wanted = 0.5 * (1 - np.exp(-5)) / run.conservation.scale
     assert run.conservation.change == pytest.approx(wanted, rel=1e-4)
     assert run.conservation.scale == pytest.approx(5e-7, rel=0.02)
     assert f"largest change {wanted:.1e} times the largest kinetic energy" in conservation_line(run.conservation)
-    resting = mbsym.loads((CASES / "osc.yaml").read_text().replace("x: 1", "x: 0"))
+    resting = mbsym.loads((STATEMENTS / "osc.yaml").read_text().replace("x: 1", "x: 0"))
     assert mbsym.simulate(resting, 1, estimate=False).conservation.measure is Measure.UNIT
 
 
@@ -207,7 +204,7 @@ def test_what_a_change_is_divided_by_is_said() -> None:
 )
 def test_what_makes_a_run_doubtful_is_read_first(error: NoEstimate, broken: bool) -> None:
     """Not behind "conserved (proved)", which is about the equations."""
-    run = mbsym.simulate(CASES / "osc.yaml", 5, estimate=False)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 5, estimate=False)
     kept = replace(run.conservation, change=0.5 if broken else 1e-9)
     doubtful = replace(run, error=error, conservation=kept, energy_conservation=kept)
     lines = [text for _, text in result_lines(doubtful, "osc.yaml")]
@@ -225,7 +222,7 @@ def test_what_other_motions_change_may_be_constant_along_this_one() -> None:
 
 def test_what_is_advised_to_a_method_with_steps_of_one_length_is_of_its_own() -> None:
     """It takes no --tolerance, and "--method rk4 with a small --step" was what had been asked for already."""
-    run = mbsym.simulate(CASES / "osc.yaml", 100, method="rk4", step=1.0, every=1.0)
+    run = mbsym.simulate(STATEMENTS / "osc.yaml", 100, method="rk4", step=1.0, every=1.0)
     (advice,) = [text for text in warnings(run.conservation, run.error) if "does not keep it" in text]
     assert "a smaller --step" in advice
     assert "rk4" not in advice
@@ -250,8 +247,7 @@ def test_a_damper_on_a_coordinate_that_rests_takes_nothing(
     start: str, wanted: Standing, whole: bool, tmp_path: Path
 ) -> None:
     """x = cos t and y = 0: T - U = 1/2 for ever.  Displaced by whatever little, y loses its energy to the damper."""
-    path = tmp_path / "particle.yaml"
-    path.write_text(RESTING.replace("START", start), encoding="utf-8")
+    path = filed(tmp_path / "particle.yaml", RESTING.replace("START", start))
     assert mbsym.simulate(path, 5, whole=whole).conservation.standing is wanted
 
 
@@ -301,7 +297,9 @@ def test_a_late_force_is_seen_however_few_rows_there_are() -> None:
 def test_the_drift_is_that_of_the_whole_interval() -> None:
     """Between the steps of the midpoint rule, which keep h, a curve is drawn that does not, however few the rows."""
     found = [
-        mbsym.simulate(CASES / "osc.yaml", 4 * np.pi, samples=rows, method="midpoint", step=0.1).conservation.change
+        mbsym.simulate(
+            STATEMENTS / "osc.yaml", 4 * np.pi, samples=rows, method="midpoint", step=0.1
+        ).conservation.change
         for rows in (3, 5, 2001)
     ]
     assert found == pytest.approx([found[2]] * 3, rel=0.05)

@@ -11,20 +11,19 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from conftest import dynamics_of
 from flint import acb, arb, arb_series, ctx
 from hypothesis import given
 from hypothesis import strategies as st
 from properties import settings
 
 import mbsym
-from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure import enclose as segments
 from mbsym.numerics.enclosure.compare import Certificate, certified
 from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import Field, Model, Ring, cap
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade.trial import trial_of
 from mbsym.report.runs.certificate import certificate_lines
 
@@ -44,10 +43,6 @@ KEPLER = (
 DRIVEN = LINE + "loads:\n  - generalized force: {x: cos(t)**2}\ninitial: {x: 0}\n"
 #: x'' = 6 x^2 with x = 1/(1 - t)^2: ends at t = 1.
 BLOW_UP = LINE + "loads:\n  - potential: -2*x**3\ninitial: {x: {position: 1, velocity: 2}}\n"
-
-
-def dynamics_of(text: str) -> Dynamics:
-    return Dynamics(scenario(mbsym.loads(text).system))
 
 
 def enclosure_of(text: str, end: float, width: float = 1e-12, **more: Any) -> Enclosure:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from conftest import filed
 
 import mbsym
 from mbsym.expressions.condition import Condition, parse_condition
@@ -227,8 +228,7 @@ def test_an_event_at_the_end_counts(oscillator: Dynamics) -> None:
 
 def test_what_stops_at_once_or_does_not_is_told(tmp_path: Path) -> None:
     """x = cos t: x <= 1 holds at the start, x = 1 is met there and touched later, which stops nothing."""
-    path = tmp_path / "oscillator.yaml"
-    path.write_text(COSINE)
+    path = filed(tmp_path / "oscillator.yaml", COSINE)
     told = " ".join(invoked(path, "x <= 1", tmp_path).split())
     assert "stopped at t = 0 by x <= 1" in told
     assert "breaks down" not in told

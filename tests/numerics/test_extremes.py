@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked, system_of
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx
 from jsonschema import Draft202012Validator
 
@@ -41,21 +40,13 @@ from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Word
 from mbsym.report.runs.extremes_tables import extremes_csv, extremes_json, tables
 from mbsym.report.schemas import schema
-from mbsym.source import load
-from mbsym_cli.main import main
 
 ROOT = Path(__file__).parents[2]
 HARD = json.loads((ROOT / "tests/references/hard_polynomials.json").read_text())["reference"]
 
 
 def system(name: str) -> System:
-    found, complaints, _ = load(ROOT / "systems" / f"{name}.yaml")
-    assert found is not None, complaints
-    return found
-
-
-def run(*words: object) -> Result:
-    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
+    return system_of(ROOT / "systems" / f"{name}.yaml")
 
 
 # --- digits ---
@@ -444,8 +435,7 @@ def test_sequences_are_ranked_by_distance() -> None:
 
 
 def test_the_command_writes_everything(tmp_path: Path) -> None:
-    done = run("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path)
-    assert done.exit_code == 0, done.output
+    done = invoked("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path, code=0)
     names = {"extremes.csv", "extremes.json", "extremes.svg", "extremes.png", ".mbsym.json"}
     assert {path.name for path in tmp_path.iterdir()} == names
     assert "Rates from 1e-8 to 1e8" in done.output
@@ -466,7 +456,7 @@ def test_numbers_stay_whole_on_a_narrow_terminal(whole: Any, width: int) -> None
 
 
 def test_without_a_terminal_every_row_is_one_line(tmp_path: Path) -> None:
-    done = run("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path)
+    done = invoked("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path)
     rows = [line for line in done.output.splitlines() if "times 1e-12 to 1e12" in line]
     assert rows
     assert all(re.search(r"\d+\*? / \d+", line) for line in rows)
@@ -475,27 +465,27 @@ def test_without_a_terminal_every_row_is_one_line(tmp_path: Path) -> None:
 
 def test_missing_values_are_listed(tmp_path: Path) -> None:
     text = (ROOT / "systems/simple-pendulum.yaml").read_text(encoding="utf-8")
-    bare = tmp_path / "bare.yaml"
-    bare.write_text("".join(x for x in text.splitlines(True) if not x.startswith(("values:", "initial:"))))
-    done = run("extremes", bare, "--out", tmp_path / "out", "--set", "g=9")
-    assert done.exit_code == 2
+    bare = filed(
+        tmp_path / "bare.yaml", "".join(x for x in text.splitlines(True) if not x.startswith(("values:", "initial:")))
+    )
+    done = invoked("extremes", bare, "--out", tmp_path / "out", "--set", "g=9", code=2)
     assert "no value for m, l, J, b, theta (its initial position)" in done.output
     assert not (tmp_path / "out").exists()
 
 
 def test_a_wrong_budget_is_refused(tmp_path: Path) -> None:
-    done = run("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path, "--budget", "0", "--set", "x=1")
+    done = invoked(
+        "extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path, "--budget", "0", "--set", "x=1"
+    )
     assert done.exit_code == 2
     assert "2 errors" in done.output
 
 
 def test_sequences_on_the_command_line() -> None:
-    done = run("extremes", ROOT / "systems/gravity-gradient.yaml", "--sequences")
-    assert done.exit_code == 0
+    done = invoked("extremes", ROOT / "systems/gravity-gradient.yaml", "--sequences", code=0)
     assert "is best" in done.output
     assert "in the description" in done.output
-    none = run("extremes", ROOT / "systems/double-pendulum.yaml", "--sequences")
-    assert none.exit_code == 0
+    none = invoked("extremes", ROOT / "systems/double-pendulum.yaml", "--sequences", code=0)
     assert "no body" in none.output
 
 

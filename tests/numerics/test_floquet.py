@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 from flint import arb, arb_mat, ctx
 from jsonschema import Draft202012Validator
 from scipy.special import mathieu_a, mathieu_b
@@ -31,7 +30,6 @@ from mbsym.numerics.orbits.variational import Flow
 from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values
-from mbsym_cli.main import main
 
 FORCED = """
 mbsym: 1
@@ -209,15 +207,13 @@ def test_a_transposed_jacobian_is_caught(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_the_command(tmp_path: Path) -> None:
-    done = CliRunner().invoke(main, ["floquet", str(SHAKEN), "--out", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+    done = invoked("floquet", SHAKEN, "--out", tmp_path, code=0)
     assert "of the motion itself that proves nothing" in done.output
     content = json.loads((tmp_path / "floquet.json").read_text())
     Draft202012Validator(schema("floquet")).validate(content)
     assert content["verdict"] == "stable_first_approximation"
     assert content["frequency"] == "60"
-    done = CliRunner().invoke(main, ["floquet", str(SHIPPED / "double-pendulum.yaml"), "--out", str(tmp_path)])
-    assert done.exit_code == 1
+    done = invoked("floquet", SHIPPED / "double-pendulum.yaml", "--out", tmp_path, code=1)
     assert "constant" in done.output
 
 
@@ -235,8 +231,7 @@ loads:
 motion: {x: 0}
 """
     path.write_text(f"{text}values: {{d: 0, a: 1, q: 0}}\n")
-    done = CliRunner().invoke(main, ["floquet", str(path)])
-    assert done.exit_code == 1
+    done = invoked("floquet", path, code=1)
     assert "with 'relations: {q: 0}' in place of these values" in " ".join(done.output.split())
     path.write_text(f"{text}values: {{d: 0, a: 1}}\nrelations: {{q: 0}}\n")
     assert mbsym.load(path).stability.numerical.word == "stable"
@@ -244,8 +239,6 @@ motion: {x: 0}
 
 def test_no_initial_state_is_asked_for(tmp_path: Path) -> None:
     """It is the unperturbed motion that is judged."""
-    path = tmp_path / "mathieu.yaml"
-    path.write_text(MATHIEU.replace("initial: {x: 1}\n", ""))
-    done = CliRunner().invoke(main, ["floquet", str(path), "--out", str(tmp_path / "out")])
-    assert done.exit_code == 0, done.output
+    path = filed(tmp_path / "mathieu.yaml", MATHIEU.replace("initial: {x: 1}\n", ""))
+    invoked("floquet", path, "--out", tmp_path / "out", code=0)
     assert mbsym.floquet(path).word is verdict(MATHIEU)

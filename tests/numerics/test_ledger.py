@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 from flint import fmpq
 
 import mbsym
@@ -47,7 +46,6 @@ from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import simulate
 from mbsym.report.runs.ledger import ledger_lines
-from mbsym_cli.main import main
 
 GENERIC = """
 mbsym: 1
@@ -399,15 +397,9 @@ def test_a_counterfactual_beyond_the_budget_costs_more_than_what_was_spent() -> 
 # --- the command ---
 
 
-def run(*words: Any) -> Any:
-    return CliRunner().invoke(main, [*map(str, words)])
-
-
 def test_the_command_tells_and_writes_the_ledger(tmp_path: Path) -> None:
-    file = tmp_path / "plane.yaml"
-    file.write_text(satellite_in_plane(), encoding="utf-8")
-    found = run("run", file, "--problems", "4,5", "--format", "json", "--ledger", "--out", tmp_path / "out")
-    assert found.exit_code == 0, found.output
+    file = filed(tmp_path / "plane.yaml", satellite_in_plane())
+    found = invoked("run", file, "--problems", "4,5", "--format", "json", "--ledger", "--out", tmp_path / "out", code=0)
     assert "plane motion psi, phi, sigma" in " ".join(found.output.split())
     assert "(proved)" in found.output
     content = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
@@ -425,8 +417,7 @@ def test_without_the_flag_there_is_no_ledger(tmp_path: Path, monkeypatch: pytest
         raise AssertionError("the ledger was made although nobody asked for it")
 
     monkeypatch.setattr("mbsym.numerics.ledger.table.ledger", forbidden)
-    found = run("run", SHIPPED / "double-pendulum.yaml", "--format", "json", "--out", tmp_path)
-    assert found.exit_code == 0, found.output
+    found = invoked("run", SHIPPED / "double-pendulum.yaml", "--format", "json", "--out", tmp_path, code=0)
     assert "ledger" not in found.output
     assert {path.name for path in tmp_path.iterdir()} == {"results.json", ".mbsym.json"}
     assert "ledger" not in json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
@@ -443,13 +434,13 @@ def table(folder: Path) -> tuple[list[str], np.ndarray[Any, Any]]:
 
 @pytest.fixture(scope="module")
 def plane(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = tmp_path_factory.mktemp("plane") / "plane.yaml"
-    file.write_text(satellite_in_plane(), encoding="utf-8")
-    return file
+    return filed(tmp_path_factory.mktemp("plane") / "plane.yaml", satellite_in_plane())
 
 
-def simulated(file: Path, folder: Path, *words: Any) -> Any:
-    return run("simulate", file, "--time", 5, "--samples", 21, "--format", "csv", "-v", "--out", folder, *words)
+def simulated(file: Path, folder: Path, *words: Any, code: int | None = None) -> Any:
+    return invoked(
+        "simulate", file, "--time", 5, "--samples", 21, "--format", "csv", "-v", "--out", folder, *words, code=code
+    )
 
 
 @pytest.mark.parametrize("words", [(), ("--arithmetic", "extended"), ("--method", "rk4", "--step", "1e-2")])
@@ -472,10 +463,8 @@ def test_resting_coordinates_are_taken_out_and_put_back(plane: Path, tmp_path: P
 
 
 def test_nothing_is_taken_out_off_the_plane(tmp_path: Path) -> None:
-    file = tmp_path / "off.yaml"
-    file.write_text(satellite_in_plane(psi="0.1"), encoding="utf-8")
-    found = simulated(file, tmp_path / "out")
-    assert found.exit_code == 0, found.output
+    file = filed(tmp_path / "off.yaml", satellite_in_plane(psi="0.1"))
+    found = simulated(file, tmp_path / "out", code=0)
     assert "rest (" not in found.output
     assert json.loads((tmp_path / "out" / "simulation.json").read_text(encoding="utf-8"))["resting"] is None
 
@@ -496,8 +485,7 @@ def test_what_is_not_proved_is_integrated(plane: Path, tmp_path: Path, monkeypat
 
 
 def test_an_early_end_tells_the_whole_state(plane: Path, tmp_path: Path) -> None:
-    found = simulated(plane, tmp_path / "out", "--step-limit", 3)
-    assert found.exit_code == 3
+    found = simulated(plane, tmp_path / "out", "--step-limit", 3, code=3)
     assert "psi = 0" in found.output
     assert "sigma_dot = 0" in found.output
     names_, values = table(tmp_path / "out")
@@ -507,10 +495,8 @@ def test_an_early_end_tells_the_whole_state(plane: Path, tmp_path: Path) -> None
 def test_a_coordinate_held_at_an_angle_keeps_it(tmp_path: Path) -> None:
     """A pendulum in the plane psi = pi/3 stays there; psi is put back as it stood, not as zero."""
     text = (SHIPPED / "spherical-pendulum.yaml").read_text(encoding="utf-8")
-    file = tmp_path / "p.yaml"
-    file.write_text(text, encoding="utf-8")
-    found = simulated(file, tmp_path / "out", "--set", "psi=pi/3", "--set", "psi_dot=0")
-    assert found.exit_code == 0, found.output
+    file = filed(tmp_path / "p.yaml", text)
+    found = simulated(file, tmp_path / "out", "--set", "psi=pi/3", "--set", "psi_dot=0", code=0)
     assert "resting psi (proved)" in " ".join(found.output.split())
     names_, values = table(tmp_path / "out")
     psi = values[:, names_.index("psi")]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
@@ -23,7 +23,6 @@ from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.planning.planning import Pins, planned
 from mbsym.numerics.scenario import scenario
 from mbsym.simulation import Request, simulate
-from mbsym_cli.main import main
 
 #: A dumbbell in the plane of its orbit, 1/100 of the radius long.
 DUMBBELL = """
@@ -163,13 +162,11 @@ def test_a_body_is_without_mass_when_all_of_it_is_gone() -> None:
 
 
 def test_the_run_tells_what_is_needed(tmp_path: Path) -> None:
-    file = tmp_path / "dumbbell.yaml"
-    file.write_text(DUMBBELL, encoding="utf-8")
+    file = filed(tmp_path / "dumbbell.yaml", DUMBBELL)
     common = ["run", str(file), "--problems", "2", "--format", "json", "--out", str(tmp_path / "out"), "--ledger"]
-    plain = CliRunner().invoke(main, common)
+    plain = invoked(*common)
     assert "depends on the accuracy" in plain.output
-    held = CliRunner().invoke(main, [*common, "--accuracy", "1e-9", "--until", "6"])
-    assert held.exit_code == 0, held.output
+    held = invoked(*common, "--accuracy", "1e-9", "--until", "6", code=0)
     assert "although this scene needs it" in held.output
     (saving,) = (
         one
@@ -190,8 +187,6 @@ def test_the_run_tells_what_is_needed(tmp_path: Path) -> None:
     ],
 )
 def test_half_an_accuracy_is_refused(tmp_path: Path, options: list[str]) -> None:
-    file = tmp_path / "dumbbell.yaml"
-    file.write_text(DUMBBELL, encoding="utf-8")
-    found = CliRunner().invoke(main, ["run", str(file), "--out", str(tmp_path / "out"), *options])
-    assert found.exit_code == 2
+    file = filed(tmp_path / "dumbbell.yaml", DUMBBELL)
+    invoked("run", file, "--out", tmp_path / "out", *options, code=2)
     assert not (tmp_path / "out").exists()

@@ -11,12 +11,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import cos, exp, sin, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import OWN, SHIPPED, reference
+from conftest import OWN, SHIPPED, dynamics_of, reference
 from scipy import integrate
 
 import mbsym
@@ -36,11 +35,6 @@ from mbsym.numerics.scenario import scenario
 FIXED = [name for name, method in METHODS.items() if method.traits.fixed]
 ADAPTIVE = [name for name, method in METHODS.items() if not method.traits.fixed]
 STIFF = ["rodas5p", "lsoda", "radau", "bdf"]
-
-
-def dynamics_of(source: Path | str) -> Dynamics:
-    analysis = mbsym.load(source) if isinstance(source, Path) else mbsym.loads(source)
-    return Dynamics(scenario(analysis.system))
 
 
 @pytest.fixture(scope="module")

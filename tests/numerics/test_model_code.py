@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, filed
 from test_kernels import COMPILER, compiled
 
 import mbsym
@@ -49,8 +49,7 @@ def doubles(*values: float) -> Any:
 
 
 def module(text: str, tmp_path: Path) -> ModuleType:
-    path = tmp_path / "model.py"
-    path.write_text(TARGETS["python"].render(mbsym.loads(text), (1, 2, 3)), encoding="utf-8")
+    path = filed(tmp_path / "model.py", TARGETS["python"].render(mbsym.loads(text), (1, 2, 3)))
     spec = importlib.util.spec_from_file_location("model", path)
     assert spec is not None
     assert spec.loader is not None

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from conftest import SHIPPED
 from scipy.special import ellipj, ellipk
 
 import mbsym
@@ -20,8 +20,6 @@ from mbsym.numerics.planning.model_choice import ModelEstimate, Propagated, conf
 from mbsym.numerics.planning.models import Model, described, droppable, faithful, modelled, orders
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.trade.trial import trial_of
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 PENDULUM = """
 mbsym: 1
@@ -48,7 +46,7 @@ def pendulum() -> Scenario:
 
 
 def satellite() -> Scenario:
-    return scenario(mbsym.load(SYSTEMS / "satellite.yaml", ()).system)
+    return scenario(mbsym.load(SHIPPED / "satellite.yaml", ()).system)
 
 
 def exact_pendulum(times: Any) -> Any:
@@ -92,7 +90,7 @@ def test_a_difference_of_roundings_rules_no_steps() -> None:
 
     Ten million steps followed the roundings; the motion itself takes about ten.
     """
-    given = scenario(mbsym.load(SYSTEMS / "orbital-gyrostat.yaml", ()).system)
+    given = scenario(mbsym.load(SHIPPED / "orbital-gyrostat.yaml", ()).system)
     both = modelled(given, Model(2)), modelled(given, Model("exact"))
     setting, ones = Setting(tolerance=1e-9, step_limit=100), np.ones(6)
     found = model_error(*both, METHODS["dop853"], setting, np.linspace(0, 0.5, 11), ones, 1e-6)

@@ -7,8 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, filed, invoked
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -17,7 +16,6 @@ from mbsym.analysis.oscillating import oscillating
 from mbsym.report.figures.oscillation_figure import oscillation_figures
 from mbsym.report.language import Language
 from mbsym.simulation.oscillation_paths import oscillation_paths
-from mbsym_cli.main import main
 
 DUFFING = """mbsym: 1
 name: Duffing
@@ -98,21 +96,18 @@ def test_titles_and_legends_follow_the_language():
 
 
 def test_the_command_draws(tmp_path):
-    file = tmp_path / "duffing.yaml"
-    file.write_text(DUFFING + NUMBERS, encoding="utf-8")
+    file = filed(tmp_path / "duffing.yaml", DUFFING + NUMBERS)
     words = ["oscillations", str(file), "--order", "1", "--format", "svg", "--out", str(tmp_path / "out")]
-    assert CliRunner().invoke(main, words).exit_code == 0
+    assert invoked(*words).exit_code == 0
     assert {x.name for x in (tmp_path / "out").glob("*.svg")} == {"oscillation.svg", "oscillation-planes.svg"}
     words[-1] = str(tmp_path / "ru")
-    assert CliRunner().invoke(main, [*words, "--language", "ru"]).exit_code == 0
+    assert invoked(*words, "--language", "ru").exit_code == 0
     english, russian = ((tmp_path / one / "oscillation.svg").read_bytes() for one in ("out", "ru"))
     assert english != russian
-    done = CliRunner().invoke(main, [*words, "--language", "xx"])
+    done = invoked(*words, "--language", "xx")
     assert (done.exit_code, "language" in done.stderr) == (2, True)
     file.write_text(DUFFING, encoding="utf-8")
-    done = CliRunner().invoke(main, words)
-    assert done.exit_code == 1
+    done = invoked(*words, code=1)
     assert "no figures: the description does not give all numbers" in " ".join(done.stderr.split())
-    done = CliRunner().invoke(main, ["oscillations", str(file), "--out", str(tmp_path)])
-    assert done.exit_code == 2
+    done = invoked("oscillations", file, "--out", tmp_path, code=2)
     assert "nothing is written without --format" in " ".join(done.stderr.split())

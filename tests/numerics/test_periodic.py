@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED, reference
+from conftest import SHIPPED, filed, invoked, reference
 from jsonschema import Draft202012Validator
 from scipy.special import ellipk
 
@@ -24,7 +23,6 @@ from mbsym.report.runs.orbit_files import sentences as orbit_sentences
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values
 from mbsym.simulation.motions import find_orbit
-from mbsym_cli.main import main
 
 PENDULUM = """
 mbsym: 1
@@ -303,20 +301,16 @@ def test_lost_growth_is_caught_by_the_divergence(monkeypatch: pytest.MonkeyPatch
 
 
 def test_the_commands(tmp_path: Path) -> None:
-    path = tmp_path / "pendulum.yaml"
-    path.write_text(PENDULUM)
-    done = CliRunner().invoke(main, ["orbit", str(path), "--period", "6.5", "--out", str(tmp_path / "out")])
-    assert done.exit_code == 0, done.output
+    path = filed(tmp_path / "pendulum.yaml", PENDULUM)
+    done = invoked("orbit", path, "--period", "6.5", "--out", tmp_path / "out", code=0)
     content = json.loads((tmp_path / "out" / "orbit.json").read_text())
     Draft202012Validator(schema("orbit")).validate(content)
     assert content["period"] == pytest.approx(4 * ellipk(np.sin(0.5) ** 2), abs=1e-10)
     assert "stable" not in done.output.replace("stability", "")
-    done = CliRunner().invoke(main, ["lyapunov", str(path), "--time", "50", "--out", str(tmp_path / "out")])
-    assert done.exit_code == 0, done.output
+    done = invoked("lyapunov", path, "--time", "50", "--out", tmp_path / "out", code=0)
     Draft202012Validator(schema("lyapunov")).validate(json.loads((tmp_path / "out" / "lyapunov.json").read_text()))
     assert "chaotic" in done.output
-    done = CliRunner().invoke(main, ["orbit", str(path), "--turns", "psi=1", "--keep", "all"])
-    assert done.exit_code == 2
+    done = invoked("orbit", path, "--turns", "psi=1", "--keep", "all", code=2)
     for part in ("--period", "no coordinate 'psi'", "unknown-choice"):
         assert part in done.output
 

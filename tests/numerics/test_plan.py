@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import SHIPPED
 from scipy.special import ellipj, ellipk
 
 import mbsym
@@ -37,8 +38,6 @@ from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.runs.plan_words import bound_lines
 from mbsym.simulation import Request, simulate
 from mbsym.simulation.accurate import simulate_accurately
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 PENDULUM = """
 mbsym: 1
@@ -174,7 +173,7 @@ def test_damping_that_nobody_feels_is_left_out_and_damping_that_counts_is_not() 
 
 
 def test_the_richer_field_is_taken_where_the_described_one_is_not_good_enough() -> None:
-    given = scenario(mbsym.load(SYSTEMS / "satellite.yaml", ()).system)
+    given = scenario(mbsym.load(SHIPPED / "satellite.yaml", ()).system)
     times = np.linspace(0, 3, 1001)
     plan = planned(given, Accuracy(1e-2), times)
     (item,) = (one for one in plan.items if one.kind == "order of gravity")
@@ -202,7 +201,7 @@ def test_a_tolerance_that_was_asked_for_is_kept_and_judged() -> None:
 
 
 def test_more_digits_are_taken_where_float64_does_not_reach() -> None:
-    given = scenario(mbsym.load(SYSTEMS / "double-pendulum.yaml", ()).system)
+    given = scenario(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system)
     plan = planned(given, Accuracy(1e-10), np.linspace(0, 100, 2001), Pins(method="dop853"))
     assert plan.scalar == "extended"
     assert plan.reached
@@ -210,7 +209,7 @@ def test_more_digits_are_taken_where_float64_does_not_reach() -> None:
 
 def test_what_cannot_be_reached_is_said_not_to_be() -> None:
     """At t = 200 rounding of 64 bits has grown by thirteen digits."""
-    given = scenario(mbsym.load(SYSTEMS / "double-pendulum.yaml", ()).system)
+    given = scenario(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system)
     plan = planned(given, Accuracy(1e-9), np.linspace(0, 150, 1001), Pins(method="dop853"))
     assert not plan.reached
     assert plan.bound.total > 1e-7
@@ -607,7 +606,7 @@ def test_a_bound_is_never_below_what_the_run_s_own_estimate_finds(monkeypatch: p
         return tuple((name, errors / 100, how) for name, errors, how in told(*arguments))
 
     monkeypatch.setattr(planning, "shares_of", flattering)
-    given = scenario(mbsym.load(SYSTEMS / "double-pendulum.yaml", ()).system)
+    given = scenario(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system)
     found = simulate_accurately(given, Request(2.0, samples=21), Accuracy(1e-6))
     assert isinstance(found.error, ErrorEstimate)
     assert found.plan is not None

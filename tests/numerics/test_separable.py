@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, dynamics_of
 
 import mbsym
 from mbsym.numerics import separable
@@ -34,10 +34,6 @@ LINKED = THREE.replace("10000*z**2/2", "10000*z**2/2 + y*z")
 CARRIED = THREE.replace("{name: c, attached to: 0,", "{name: c, attached to: b,").replace("[0, 0, z]", "[0, z, 0]")
 #: a drives itself to a singularity: x = 1/(1 - t)^2.
 BLOW_UP = THREE.replace("x**2/2", "-2*x**3").replace("{x: 1,", "{x: {position: 1, velocity: 2},")
-
-
-def dynamics_of(text: str) -> Dynamics:
-    return Dynamics(scenario(mbsym.loads(text).system))
 
 
 def parts_of(text: str) -> list[tuple[str, ...]]:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import system_of
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -19,14 +20,12 @@ from mbsym.numerics.extremes import singular as module
 from mbsym.numerics.extremes.singular import CHART, MODEL, Singularities, singularities
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.scenario import Scenario, changed, scenario
-from mbsym.source import load
 
 ROOT = Path(__file__).parents[2]
 
 
 def given_of(name: str, **values: F) -> Scenario:
-    found, complaints, _ = load(ROOT / "systems" / f"{name}.yaml")
-    assert found is not None, complaints
+    found = system_of(ROOT / "systems" / f"{name}.yaml")
     return scenario(found, {key: Number(value) for key, value in values.items()})
 
 

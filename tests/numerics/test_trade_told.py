@@ -8,20 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import dynamics_of, filed, invoked
 
-import mbsym
-from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Setting, Work
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import FOLLOWED, cost
-from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import reference_search
 from mbsym.numerics.trade.comparison import compared
 from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
 from mbsym.numerics.trade.tradeoff import FIRST, tradeoff
 from mbsym.numerics.trade.trial import trial_of
-from mbsym_cli.main import main
 
 OSCILLATOR = """
 mbsym: 1
@@ -39,10 +35,6 @@ loads:
 values: {m: 1, k: 1, c: 1/2}
 initial: {x: 1}
 """
-
-
-def dynamics_of(text: str) -> Dynamics:
-    return Dynamics(scenario(mbsym.loads(text).system))
 
 
 def test_the_energy_that_a_damper_takes_is_no_error_of_a_method() -> None:
@@ -101,10 +93,8 @@ def test_a_way_to_a_reference_that_fails_as_nobody_foresaw_is_no_end_of_the_stud
     with pytest.raises(Breakdown) as told:
         whole_reference(dynamics_of(OSCILLATOR), 5.0, 10.0)
     assert told.value.kind == BROKEN
-    path = tmp_path / "oscillator.yaml"
-    path.write_text(OSCILLATOR)
-    found = CliRunner().invoke(main, ["tradeoff", str(path), "--time", "5", "--out", str(tmp_path)])
-    assert found.exit_code == 3
+    path = filed(tmp_path / "oscillator.yaml", OSCILLATOR)
+    found = invoked("tradeoff", path, "--time", "5", "--out", tmp_path, code=3)
     assert "internal error" in found.output
     assert "planted" in found.output
     assert "Traceback" not in found.output

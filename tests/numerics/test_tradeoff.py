@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import dynamics_of, filed, invoked
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
@@ -25,7 +25,6 @@ from mbsym.numerics.trade import reference_search
 from mbsym.numerics.trade.fidelity import measured, model_advice
 from mbsym.numerics.trade.reference_search import Reference, solved_at, whole_reference
 from mbsym.numerics.trade.tradeoff import Tradeoff, advice, studied, tradeoff
-from mbsym_cli.main import main
 
 ROOT = Path(__file__).parents[2]
 SYSTEMS = ROOT / "systems"
@@ -47,10 +46,6 @@ motion: {theta: 0}
 values: {m: 1, L: 1, g: 9.81}
 initial: {theta: -pi/2}
 """
-
-
-def dynamics_of(text: str) -> Dynamics:
-    return Dynamics(scenario(mbsym.loads(text).system))
 
 
 def shipped(name: str, **values: int | Fraction) -> Dynamics:
@@ -231,8 +226,8 @@ def test_a_moving_coordinate_is_no_candidate() -> None:
 # --- the command ---
 
 
-def run(*words: Any) -> Any:
-    return CliRunner().invoke(main, ["tradeoff", *map(str, words)])
+def run(*words: Any, code: int | None = None) -> Any:
+    return invoked("tradeoff", *words, code=code)
 
 
 def test_the_command_writes_a_table_and_a_figure_and_gives_advice(tmp_path: Path) -> None:
@@ -248,8 +243,8 @@ def test_the_command_writes_a_table_and_a_figure_and_gives_advice(tmp_path: Path
         "rk4,dop853",
         "--out",
         tmp_path,
+        code=0,
     )
-    assert found.exit_code == 0, found.output
     assert "estimated error" in found.output
     assert "reaches 1e-06 in the least time measured here" in found.output
     rows = list(csv.DictReader((tmp_path / "tradeoff.csv").read_text().splitlines()))
@@ -272,17 +267,14 @@ def test_every_series_looks_different() -> None:
 
 
 def test_everything_wrong_is_said_at_once(tmp_path: Path) -> None:
-    found = run(SYSTEMS / "double-pendulum.yaml", "--time", "soon", "--target", 2, "-s", "l3=1", "-m", "euler")
-    assert found.exit_code == 2
+    found = run(SYSTEMS / "double-pendulum.yaml", "--time", "soon", "--target", 2, "-s", "l3=1", "-m", "euler", code=2)
     for word in ("soon", "--target: error[bad-number]: choose between", "l3", "euler", "4 errors; nothing was written"):
         assert word in found.output
 
 
 def test_missing_values_are_listed(tmp_path: Path) -> None:
-    path = tmp_path / "bare.yaml"
-    path.write_text(PENDULUM[: PENDULUM.index("values")])
-    found = run(path, "--time", 1)
-    assert found.exit_code == 2
+    path = filed(tmp_path / "bare.yaml", PENDULUM[: PENDULUM.index("values")])
+    found = run(path, "--time", 1, code=2)
     assert "m, L, g, theta (its initial position)" in found.output
 
 
@@ -290,8 +282,7 @@ def test_a_finite_escape_time_is_an_answer(tmp_path: Path) -> None:
     path = tmp_path / "escape.yaml"
     text = PENDULUM.replace("uniform gravity: {acceleration: g, direction: [0, -1, 0]}", "force function: theta**4")
     path.write_text(text)
-    found = run(path, "--time", 20, "--out", tmp_path)
-    assert found.exit_code == 3
+    found = run(path, "--time", 20, "--out", tmp_path, code=3)
     assert "no reference solution up to t = 20" in found.output
 
 
@@ -302,11 +293,9 @@ def test_a_trial_that_fails_in_a_way_that_nobody_foresaw_costs_its_ladder_and_no
         raise ValueError("planted")
 
     monkeypatch.setattr(METHODS["scipy-rk45"], "start", broken)
-    path = tmp_path / "pendulum.yaml"
-    path.write_text(PENDULUM)
+    path = filed(tmp_path / "pendulum.yaml", PENDULUM)
     words = ("--time", 2, "--target", "1e-6", "--budget", 8, "-m", "scipy-rk45,dop853", "--out", tmp_path)
-    found = run(path, *words)
-    assert found.exit_code == 1, found.output
+    found = run(path, *words, code=1)
     assert "internal error, please report it: ValueError: planted" in found.output
     assert "dop853" in found.output
     assert "reaches 1e-06 in the least time measured here" in found.output
@@ -316,11 +305,9 @@ def test_a_trial_that_fails_in_a_way_that_nobody_foresaw_costs_its_ladder_and_no
 
 
 def gravity_models(text: str, tmp_path: Path, time: int = 1000) -> dict[str, str]:
-    path = tmp_path / "system.yaml"
-    path.write_text(text)
+    path = filed(tmp_path / "system.yaml", text)
     words = (path, "--time", time, "--target", "1e-6", "--budget", 60, "--methods", "dop853", "--out", tmp_path)
-    found = run(*words)
-    assert found.exit_code == 0, found.output
+    run(*words, code=0)
     models = csv.DictReader((tmp_path / "fidelity.csv").read_text().splitlines())
     return {row["model"]: row["error"] for row in models}
 

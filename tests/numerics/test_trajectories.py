@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import OWN, SHIPPED, parsed, reference
+from conftest import OWN, SHIPPED, filed, parsed, reference, system_of
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import available
@@ -23,7 +23,6 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import Trajectory, simulate
-from mbsym.source import load
 
 PENDULUM = """
 mbsym: 1
@@ -56,15 +55,12 @@ bodies:
 
 def dynamics_of(path: Path, **values: object) -> Dynamics:
     """The description with some values replaced."""
-    system, complaints, _ = load(path)
-    assert system is not None, [item.message for item in complaints.items]
+    system = system_of(path)
     return Dynamics(scenario(system, {name: parsed(str(value)) for name, value in values.items()}))
 
 
 def written(folder: Path, text: str) -> Path:
-    path = folder / "system.yaml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return filed(folder / "system.yaml", text)
 
 
 def run(dynamics: Dynamics, times: Sequence[Any], tolerance: float = 1e-13, scalar: str = "float64") -> Trajectory:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import system_of
 
 from mbsym.expressions.tree import Number
 from mbsym.mechanics.variables import ring_of
@@ -18,7 +19,6 @@ from mbsym.numerics.planning import sizes as scales
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import digits
 from mbsym.report.runs.extremes_tables import tables
-from mbsym.source import load
 
 ROOT = Path(__file__).parents[2]
 
@@ -32,8 +32,7 @@ SPRING = {
 
 def measured(name: str, dimensions: dict[str, Any], units: tuple[F, F, F]) -> Extremes:
     """The scenario written in units so many times smaller than kg, m and s."""
-    system, complaints, _ = load(ROOT / "systems" / f"{name}.yaml")
-    assert system is not None, complaints
+    system = system_of(ROOT / "systems" / f"{name}.yaml")
     mass, length, time = units
     values = {
         key: Number(value * mass**m * length**l * time**t)

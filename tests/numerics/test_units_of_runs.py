@@ -12,6 +12,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from conftest import system_of
 
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import number
@@ -36,7 +37,6 @@ from mbsym.numerics.states import state_names
 from mbsym.simulation import Request, Simulation, simulate
 from mbsym.simulation.accurate import plan_for
 from mbsym.simulation.motions import find_orbit
-from mbsym.source import read
 from tests.numerics.test_adjoint import expression
 from tests.source.test_units_of_systems import SYSTEMS, UNITS
 
@@ -55,13 +55,10 @@ ROUNDINGS = 1e-13
 def described(name: str) -> System:
     """A system that comes with mbsym, with the units of its quantities."""
     text = (SYSTEMS / f"{name}.yaml").read_text("utf-8")
-    plain, _ = read(text, f"{name}.yaml")
-    assert plain is not None
+    plain = system_of(text, f"{name}.yaml")
     speeds = set(plain.variables) - set(plain.coordinates)  # their units follow
     given = "".join(f"  {symbol}: {unit}\n" for symbol, unit in UNITS[name].items() if symbol not in speeds)
-    system, complaints = read(f"{text}\nunits:\n{given}", f"{name}.yaml")
-    assert system is not None, complaints
-    return system
+    return system_of(f"{text}\nunits:\n{given}", f"{name}.yaml")
 
 
 def factor(of: Dimension, units: tuple[F, F, F]) -> float | F:
@@ -302,8 +299,7 @@ values: {L: 1}
 @pytest.mark.parametrize(("away", "near"), [(F(2), False), (F(1, 100), True)])
 def test_how_near_the_end_of_a_domain_is_depends_on_no_unit(unit: F, away: F, near: bool) -> None:
     """x'' = -L sqrt(x/L + 1), from x = (away - 1) L with x' = -L."""
-    system, _ = read(ROOT)
-    assert system is not None
+    system = system_of(ROOT)
     values = {"L": unit, "x": (away - 1) * unit, "x_dot": -unit}
     given = scenario(system, {name: number(value) for name, value in values.items()})
     state = np.array([float(x) for x in given.state])
@@ -318,8 +314,7 @@ def of_scene(given: Scenario) -> Magnitudes:
 
 
 def from_text(text: str) -> Scenario:
-    system, complaints = read(text)
-    assert system is not None, complaints
+    system = system_of(text)
     return scenario(system)
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from math import pi, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.algebra.failures import Failure
@@ -21,11 +21,9 @@ from mbsym.report.viewer.motion import motion, motion_json
 from mbsym.report.viewer.page import at_rest, at_rest_json
 from mbsym.simulation import Request
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
-
 
 def loaded(name: str) -> Any:
-    return mbsym.load(SYSTEMS / f"{name}.yaml")
+    return mbsym.load(SHIPPED / f"{name}.yaml")
 
 
 def wrong(found: Modes, analysis: Any) -> float:
@@ -121,7 +119,7 @@ def test_no_modes_without_a_motion_or_numbers() -> None:
         modes(loaded("four-bar"))
     with pytest.raises(Failure, match="does not exist there"):
         modes(loaded("spherical-pendulum"))
-    text = (SYSTEMS / "double-pendulum.yaml").read_text(encoding="utf-8").replace("l2: 1, g: 9.81", "g: 9.81")
+    text = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8").replace("l2: 1, g: 9.81", "g: 9.81")
     with pytest.raises(Failure, match="not all parameters have values"):
         modes(mbsym.loads(text))
 
@@ -184,7 +182,7 @@ initial: {b: 0, c: 2}
 
 
 def test_motions_make_no_numbers_up() -> None:
-    text = (SYSTEMS / "double-pendulum.yaml").read_text(encoding="utf-8").replace("l2: 1, g: 9.81", "g: 9.81")
+    text = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8").replace("l2: 1, g: 9.81", "g: 9.81")
     with pytest.raises(Incomplete, match="l2"):
         motion(mbsym.loads(text).system, Request(1.0))
 
@@ -198,6 +196,6 @@ def test_equilibria_of_the_pendulum() -> None:
     assert by_value[0].verdict.word is Word.ASYMPTOTIC
     assert by_value[round(pi, 9)].verdict.word is Word.UNSTABLE
     json.dumps(at_rest_json(found), allow_nan=False)
-    sleigh = (SYSTEMS / "chaplygin-sleigh.yaml").read_text(encoding="utf-8")
+    sleigh = (SHIPPED / "chaplygin-sleigh.yaml").read_text(encoding="utf-8")
     with pytest.raises(Failure):  # y = x^2 leaves the plane no symmetry along which a sleigh moves steadily
         at_rest(mbsym.loads(sleigh.replace("constraints:\n", "constraints:\n  - relation: y = x**2\n")).system)

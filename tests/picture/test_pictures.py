@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.algebra.failures import Failure, GivenByMatrices
@@ -19,12 +20,11 @@ from mbsym.picture.build import closed, gaps, start
 from mbsym.picture.values import Acting, Measure, Picture, Stretch
 from mbsym.source import read
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 CASES = sorted((Path(__file__).parents[1] / "cases").glob("*/*.yaml"))
 
 #: Given by matrices: no bodies.
 MATRICES = ("gyroscopic-pair", "triangular-points")
-DRAWN = [path for path in sorted(SYSTEMS.glob("*.yaml")) if path.stem not in MATRICES]
+DRAWN = [path for path in sorted(SHIPPED.glob("*.yaml")) if path.stem not in MATRICES]
 
 
 def placed(found: Picture, state: dict[str, float]) -> list[float]:
@@ -171,12 +171,12 @@ def test_values_that_contradict_each_other_are_refused() -> None:
 
 def test_no_picture_of_matrices() -> None:
     with pytest.raises(Failure, match="no bodies to draw"):
-        picture(mbsym.load(SYSTEMS / "gyroscopic-pair.yaml").system)
+        picture(mbsym.load(SHIPPED / "gyroscopic-pair.yaml").system)
 
 
 def test_loops_are_closed_for_the_slider_that_moves() -> None:
     """Four rods: the crank is turned, coupler and rocker follow; a crank angle that no linkage has stays open."""
-    found = picture(mbsym.load(SYSTEMS / "four-bar.yaml").system)
+    found = picture(mbsym.load(SHIPPED / "four-bar.yaml").system)
     assert found.closure is not None
     start_ = {x.name: x.value for x in found.coordinates}
     assert max(gaps(found.program, found.closure, start_)) < 1e-12
@@ -190,7 +190,7 @@ def test_loops_are_closed_for_the_slider_that_moves() -> None:
     assert tip == pytest.approx([0, 0], abs=1e-9)
     # The tip of the crank at (0.37, 0) is 0.37 from the ground: rods of 0.21 and 0.34 reach that; with a rocker of
     # 0.05 they do not.
-    text = (SYSTEMS / "four-bar.yaml").read_text(encoding="utf-8").replace("l4: 0.34", "l4: 0.05")
+    text = (SHIPPED / "four-bar.yaml").read_text(encoding="utf-8").replace("l4: 0.34", "l4: 0.05")
     short = picture(of(text))
     assert short.closure is not None
     _, good = closed(short.program, short.closure, {x.name: x.value for x in short.coordinates} | {"q1": 0.0}, ("q1",))
@@ -224,11 +224,11 @@ def test_a_loop_is_closed_whatever_the_unit_of_length(unit: float) -> None:
 
 def test_a_loop_that_cannot_be_closed_is_told() -> None:
     """A ground of 1.3: crank, coupler and rocker have 0.79 together."""
-    text = (SYSTEMS / "four-bar.yaml").read_text(encoding="utf-8").replace("l1: 0.13", "l1: 1.3")
+    text = (SHIPPED / "four-bar.yaml").read_text(encoding="utf-8").replace("l1: 0.13", "l1: 1.3")
     found = picture(of(text))
     assert found.notes.open_loop
     assert any(x.startswith("The constraints are open here") for x in as_json(found)["sentences"])
-    good = as_json(picture(mbsym.load(SYSTEMS / "four-bar.yaml").system))["sentences"]
+    good = as_json(picture(mbsym.load(SHIPPED / "four-bar.yaml").system))["sentences"]
     assert not any("open" in x for x in good)
 
 
@@ -251,10 +251,10 @@ initial: {{x: 0, y: -{length}}}
 
 
 def test_what_orbits_is_seen_from_its_orbit() -> None:
-    found = picture(mbsym.load(SYSTEMS / "satellite.yaml").system)
+    found = picture(mbsym.load(SHIPPED / "satellite.yaml").system)
     assert found.frame == "orbital frame"
     assert found.extent < 10
-    assert picture(mbsym.load(SYSTEMS / "double-pendulum.yaml").system).frame == "0"
+    assert picture(mbsym.load(SHIPPED / "double-pendulum.yaml").system).frame == "0"
 
 
 def test_ellipsoids_have_the_moments_of_their_body() -> None:
@@ -285,7 +285,7 @@ def test_a_mistake_in_a_turn_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(Places, "_turned", wrong)
     with pytest.raises(AssertionError):
-        test_poses_against_positions(SYSTEMS / "double-pendulum.yaml")
+        test_poses_against_positions(SHIPPED / "double-pendulum.yaml")
 
 
 def test_tables_are_the_curves_of_the_description() -> None:

@@ -14,15 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 import windows
-from click.testing import CliRunner, Result
+from click.testing import Result
+from conftest import SHIPPED, filed, invoked
 
 import mbsym
 from mbsym.picture import as_json, picture
 from mbsym.report.viewer.page import viewed
-from mbsym_cli.main import main
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
-DRAWN = [x for x in sorted(SYSTEMS.glob("*.yaml")) if x.stem not in ("gyroscopic-pair", "triangular-points")]
+DRAWN = [x for x in sorted(SHIPPED.glob("*.yaml")) if x.stem not in ("gyroscopic-pair", "triangular-points")]
 
 HOSTILE = """mbsym: 1
 name: "</script><img src=x onerror=alert(1)><!--"
@@ -35,8 +34,8 @@ initial: {a: 1}
 """
 
 
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(main, ["view", *map(str, arguments)])
+def run(*arguments: object, code: int | None = None) -> Result:
+    return invoked("view", *arguments, code=code)
 
 
 class Elements(HTMLParser):
@@ -65,7 +64,7 @@ class Elements(HTMLParser):
 
 def test_nothing_of_a_description_becomes_an_element() -> None:
     text, _ = viewed(mbsym.loads(HOSTILE).system, {}, time=1.0, modes=True, equilibria=True)
-    plain, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, time=1.0)
+    plain, _ = viewed(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, {}, time=1.0)
     found, usual = Elements(text), Elements(plain)
     assert [name for name, _ in found.names] == [name for name, _ in usual.names]
     assert all(not name.startswith("on") and name != "src" for _, given in found.names for name in given)
@@ -82,7 +81,7 @@ def test_nothing_of_a_description_becomes_an_element() -> None:
 
 
 def test_the_page_asks_the_network_for_nothing() -> None:
-    text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {})
+    text, _ = viewed(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, {})
     own = re.sub(r"<script.*?</script>|<style.*?</style>", "", text, flags=re.DOTALL)
     assert not re.search(r"https?:|src=|href=|url\(|@import", own)
 
@@ -90,9 +89,17 @@ def test_the_page_asks_the_network_for_nothing() -> None:
 def test_the_command_writes_a_page_and_tells_of_it(tmp_path: Path) -> None:
     out = tmp_path / "page.html"
     done = run(
-        SYSTEMS / "simple-pendulum.yaml", "--time", 1, "--modes", "--equilibria", "--set", "theta=1/4", "-o", out
+        SHIPPED / "simple-pendulum.yaml",
+        "--time",
+        1,
+        "--modes",
+        "--equilibria",
+        "--set",
+        "theta=1/4",
+        "-o",
+        out,
+        code=0,
     )
-    assert done.exit_code == 0, done.output
     data = json.loads(Elements(out.read_text(encoding="utf-8")).inside[1])
     assert data["picture"]["coordinates"][0]["value"] == 0.25
     assert data["motion"]["coordinates"]["theta"][0] == 0.25
@@ -104,11 +111,9 @@ def test_the_command_writes_a_page_and_tells_of_it(tmp_path: Path) -> None:
 
 def test_what_is_told_of_a_page_is_in_the_language_of_the_description(tmp_path: Path) -> None:
     """A skate: by motions it comes to every position, so that none is said to be out of reach."""
-    text = (SYSTEMS / "chaplygin-sleigh.yaml").read_text(encoding="utf-8")
-    file = tmp_path / "sledge.yaml"
-    file.write_text(text.replace("mbsym: 1\n", "mbsym: 1\nlanguage: ru\n"), encoding="utf-8")
-    done = run(file, "--equilibria", "-o", tmp_path / "page.html")
-    assert done.exit_code == 0, done.output
+    text = (SHIPPED / "chaplygin-sleigh.yaml").read_text(encoding="utf-8")
+    file = filed(tmp_path / "sledge.yaml", text.replace("mbsym: 1\n", "mbsym: 1\nlanguage: ru\n"))
+    done = run(file, "--equilibria", "-o", tmp_path / "page.html", code=0)
     assert "достижимо оно движением или нет" in done.output
     lines = [line for line in done.output.split("\n") if not line.startswith(text.split("name: ")[1].split("\n")[0])]
     assert not re.search("[a-z]{4}", re.sub(r"\S*(html|yaml)", "", "\n".join(lines))), done.output
@@ -121,10 +126,9 @@ def test_what_is_told_of_a_page_is_in_the_language_of_the_description(tmp_path: 
 def test_what_cannot_be_had_is_told_on_the_page(name: str, what: str, why: str, tmp_path: Path) -> None:
     """Four bars without a motion have no modes, a sledge led along a curve no list of equilibria: the picture stays."""
     out, file = tmp_path / "page.html", tmp_path / f"{name}.yaml"
-    text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
     file.write_text(text.replace("constraints:\n", "constraints:\n  - relation: y = x**2\n"), encoding="utf-8")
-    done = run(file if what == "equilibria" else SYSTEMS / f"{name}.yaml", f"--{what}", "-o", out)
-    assert done.exit_code == 0
+    done = run(file if what == "equilibria" else SHIPPED / f"{name}.yaml", f"--{what}", "-o", out, code=0)
     assert f"no {what}: " in done.output
     data = json.loads(Elements(out.read_text(encoding="utf-8")).inside[1])
     assert why in data[what]["why"]
@@ -153,14 +157,12 @@ values: {s: 2, k: 4}
 
 def test_missing_values_are_stood_in_for_unless_a_motion_is_asked_for(tmp_path: Path) -> None:
     description = tmp_path / "one.yaml"
-    whole = (SYSTEMS / "simple-pendulum.yaml").read_text(encoding="utf-8")
+    whole = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
     description.write_text(whole.replace("l: 0.5, ", ""), encoding="utf-8")
     out = tmp_path / "page.html"
-    done = run(description, "-o", out)
-    assert done.exit_code == 0
+    done = run(description, "-o", out, code=0)
     assert "Stand-ins for values that are not given, only to draw: l = 1." in done.output
-    done = run(description, "--time", 1, "-o", tmp_path / "other.html")
-    assert done.exit_code == 2
+    done = run(description, "--time", 1, "-o", tmp_path / "other.html", code=2)
     assert not (tmp_path / "other.html").exists()
 
 
@@ -174,15 +176,13 @@ def test_missing_values_are_stood_in_for_unless_a_motion_is_asked_for(tmp_path: 
     ],
 )
 def test_wrong_options(options: tuple[str, ...], complaint: str, tmp_path: Path) -> None:
-    done = run(SYSTEMS / "simple-pendulum.yaml", *options, "-o", tmp_path / "page.html")
-    assert done.exit_code == 2, done.output
+    done = run(SHIPPED / "simple-pendulum.yaml", *options, "-o", tmp_path / "page.html", code=2)
     assert complaint in done.output
     assert not (tmp_path / "page.html").exists()
 
 
 def test_systems_of_matrices_have_no_picture(tmp_path: Path) -> None:
-    done = run(SYSTEMS / "gyroscopic-pair.yaml", "-o", tmp_path / "page.html")
-    assert done.exit_code == 2
+    done = run(SHIPPED / "gyroscopic-pair.yaml", "-o", tmp_path / "page.html", code=2)
     assert "given by its matrices" in done.output
 
 
@@ -229,7 +229,7 @@ def show(browser: Any) -> Iterator[Callable[[Path], Window]]:
 def still(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Window]:
     """The double pendulum, for a reader who wants things still."""
     out = tmp_path_factory.mktemp("view") / "page.html"
-    text, _ = viewed(mbsym.load(SYSTEMS / "double-pendulum.yaml").system, {}, 2.0, modes=True, equilibria=True)
+    text, _ = viewed(mbsym.load(SHIPPED / "double-pendulum.yaml").system, {}, 2.0, modes=True, equilibria=True)
     out.write_text(text, encoding="utf-8")
     window = Window(browser, out, reduced_motion="reduce")
     yield window
@@ -264,7 +264,7 @@ WITHOUT = (
 def test_without_a_graphics_card_the_same_is_drawn_flat(browser: Any, tmp_path: Path) -> None:
     """The bob of the pendulum is where WebGL draws it, in its colour, and moves."""
     out = tmp_path / "page.html"
-    text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, 0.5)
+    text, _ = viewed(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, {}, 0.5)
     out.write_text(text, encoding="utf-8")
     page = browser.new_page(reduced_motion="reduce")
     page.add_init_script(WITHOUT.format("kind.startsWith('webgl')"))
@@ -289,7 +289,7 @@ def test_without_a_graphics_card_the_same_is_drawn_flat(browser: Any, tmp_path: 
 def test_without_any_canvas_a_motion_is_told_all_the_same(browser: Any, tmp_path: Path) -> None:
     """A browser that draws nothing: time goes on, energy and positions are told, and no button is for a picture."""
     out = tmp_path / "page.html"
-    text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, 0.2)
+    text, _ = viewed(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, {}, 0.2)
     out.write_text(text, encoding="utf-8")
     page = browser.new_page()
     page.add_init_script(WITHOUT.format("true"))
@@ -310,7 +310,7 @@ def test_without_any_canvas_a_motion_is_told_all_the_same(browser: Any, tmp_path
 def test_the_page_by_keys(show: Callable[[Path], Window], tmp_path: Path) -> None:
     """Sliders, time, modes and equilibria without a pointer; nothing moves by itself where that is not wanted."""
     out = tmp_path / "page.html"
-    text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, 2.0, modes=True, equilibria=True)
+    text, _ = viewed(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, {}, 2.0, modes=True, equilibria=True)
     out.write_text(text, encoding="utf-8")
     window = show(out)
     page = window.page
@@ -339,7 +339,7 @@ def test_the_page_by_keys(show: Callable[[Path], Window], tmp_path: Path) -> Non
 
 def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> None:
     """The crank of the four-bar linkage on the page, by the page's own Newton steps."""
-    found = as_json(picture(mbsym.load(SYSTEMS / "four-bar.yaml").system))
+    found = as_json(picture(mbsym.load(SHIPPED / "four-bar.yaml").system))
     state = "(q) => { mbsymViewer.slid('q1', q); return [mbsymViewer.state, mbsymViewer.said.textContent]; }"
     still.page.evaluate("(told) => mbsymViewer.show(told)", found)
     for crank in (2.3, 2.6, 1.9):
@@ -351,7 +351,7 @@ def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> Non
             turned += there[name]
             tip = tip + rod * np.array([np.cos(turned), np.sin(turned)])
         assert tip == pytest.approx([0, 0], abs=1e-8)
-    text = (SYSTEMS / "four-bar.yaml").read_text(encoding="utf-8").replace("l4: 0.34", "l4: 0.05")
+    text = (SHIPPED / "four-bar.yaml").read_text(encoding="utf-8").replace("l4: 0.34", "l4: 0.05")
     short = as_json(picture(mbsym.loads(text).system))
     still.page.evaluate("(told) => mbsymViewer.show(told)", short)
     _, said = still.page.evaluate(state, 0.0)
@@ -359,8 +359,7 @@ def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> Non
 
 
 def test_markup_stays_text_in_a_browser(show: Callable[[Path], Window], tmp_path: Path) -> None:
-    out = tmp_path / "page.html"
-    out.write_text(viewed(mbsym.loads(HOSTILE).system, {}, 1.0, modes=True)[0], encoding="utf-8")
+    out = filed(tmp_path / "page.html", viewed(mbsym.loads(HOSTILE).system, {}, 1.0, modes=True)[0])
     window = show(out)
     assert not window.complaints
     assert window.page.locator("img, iframe, svg:not(.viewer-axes), b").count() == 0

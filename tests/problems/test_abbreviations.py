@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
 from mbsym.problems.claims import Symbols
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
-
 
 @pytest.fixture(scope="module", params=["satellite", "satellite-with-damper"])
 def analysis(request: pytest.FixtureRequest) -> Analysis:
-    return mbsym.load(SYSTEMS / f"{request.param}.yaml", ())
+    return mbsym.load(SHIPPED / f"{request.param}.yaml", ())
 
 
 def test_every_formula_is_the_same(analysis: Analysis) -> None:

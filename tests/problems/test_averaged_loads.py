@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import STATEMENTS, filed, invoked
 from scipy.integrate import solve_ivp
 from terminal import told
 
@@ -28,9 +27,6 @@ from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import averages, contradicts
 from mbsym.simulation.expanded import Measured
 from mbsym.simulation.expanded import average_measured as measured
-from mbsym_cli.main import main
-
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 
 POINT = """
 mbsym: 1
@@ -317,7 +313,7 @@ def test_what_contradicts_a_result(distances, lie):
 
 
 def test_where_both_motions_rest_nothing_is_measured():
-    told = Analysis(mbsym.loads((CASES / "paul2.yaml").read_text().replace("x: 0.1", "x: 0")).system, (12,))
+    told = Analysis(mbsym.loads((STATEMENTS / "paul2.yaml").read_text().replace("x: 0.1", "x: 0")).system, (12,))
     (one,) = averages(told.small_parameters, told.system)
     assert "tells nothing" in one.measured
     assert not one.withdrawn
@@ -347,7 +343,7 @@ WITHDRAWN = ("withdrawn", "отозван", "se retira")
 def test_an_order_that_is_assumed_wrongly_is_withdrawn_on_every_surface(monkeypatch, tmp_path, power):
     """The planted lie: with v = O(1) or O(eps) V would be 0; the trap oscillates at v/(nu sqrt 2) = 1.77."""
     monkeypatch.setattr(averaging, "orders_of", lambda *given: {"v": power})
-    path = CASES / "paul2.yaml"
+    path = STATEMENTS / "paul2.yaml"
     system = mbsym.load(path).system
     for name, text in _texts(system).items():
         assert not [word for word in (*THEOREM, *POTENTIAL, *KEPT) if word in text], name
@@ -360,8 +356,7 @@ def test_an_order_that_is_assumed_wrongly_is_withdrawn_on_every_surface(monkeypa
     assert not {"potential", "vibrational", "averaged_motion_at_values"} & set(one)
     out = tmp_path / "averaged.yaml"
     for options in ([], ["--quiet"]):
-        done = CliRunner().invoke(main, ["average", str(path), "--out", str(out), *options])
-        assert done.exit_code == 1
+        done = invoked("average", path, "--out", out, *options, code=1)
         assert "withdrawn" in done.output
         assert "effective potential" not in done.output
         assert not out.exists()
@@ -369,7 +364,7 @@ def test_an_order_that_is_assumed_wrongly_is_withdrawn_on_every_surface(monkeypa
 
 def test_the_scaling_stands_beside_the_result_on_every_surface(tmp_path):
     """V = v^2 x^2/(4 nu^2) for v of order 1/eps, the rate as well."""
-    path = CASES / "paul2.yaml"
+    path = STATEMENTS / "paul2.yaml"
     system = mbsym.load(path).system
     texts = _texts(system)
     for name, text in texts.items():
@@ -383,20 +378,17 @@ def test_the_scaling_stands_beside_the_result_on_every_surface(tmp_path):
     (one,) = json.loads(texts["json"])["small_parameters"]["averaged"]
     assert (one["potential"], one["orders"]) == ("v**2*x**2/(4*nu**2)", {"nu": -1, "v": -1})
     out = tmp_path / "averaged.yaml"
-    done = CliRunner().invoke(main, ["average", str(path), "--out", str(out)])
-    assert done.exit_code == 0, done.output
+    done = invoked("average", path, "--out", out, code=0)
     assert "Taken as of the order of the power -1 of epsilon: v." in done.output
     assert "nu of order eps^-1, v of order eps^-1, all else of order 1" in out.read_text()
     assert _value(mbsym.load(out).linearisation.K[0, 0], v=100, nu=40) == pytest.approx(100**2 / (2 * 40**2))
 
 
 def test_the_command_takes_orders():
-    path = str(CASES / "avgmean.yaml")
-    done = CliRunner().invoke(main, ["average", path, "--order", "u=0", "--time", "1"])
-    assert done.exit_code == 0, done.output
+    path = str(STATEMENTS / "avgmean.yaml")
+    done = invoked("average", path, "--order", "u=0", "--time", "1", code=0)
     assert "Effective potential: u x^2/4." in done.output
-    refused = CliRunner().invoke(main, ["average", path, "--order", "q=1", "--order", "u", "--order", "u=x"])
-    assert refused.exit_code == 2
+    refused = invoked("average", path, "--order", "q=1", "--order", "u", "--order", "u=x", code=2)
     assert refused.output.count("--order: error[") == 3, refused.output
 
 
@@ -432,8 +424,7 @@ def test_forces_beside_an_effective_potential_are_told(tmp_path, held, potential
     found = averaging_of(one, "phi")
     assert str(found.potential) == potential
     assert found.beside == beside
-    path = tmp_path / "dipole.yaml"
-    path.write_text(text)
-    told = [CliRunner().invoke(main, ["average", str(path)]).output]
+    path = filed(tmp_path / "dipole.yaml", text)
+    told = [invoked("average", path).output]
     told += [x for name, x in _texts(one.system).items() if name in ("latex en", "html en", "terminal")]
     assert ["eside it act the forces on" in " ".join(x.split()) for x in told] == [bool(beside)] * 4

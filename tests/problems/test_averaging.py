@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy
-from click.testing import CliRunner
+from conftest import invoked, system_of
 from jsonschema import Draft202012Validator
 from scipy.integrate import solve_ivp
 
@@ -19,8 +19,7 @@ from mbsym.analysis.averaged import averaged_system, averaging_of
 from mbsym.report.schemas import schema
 from mbsym.report.words.expansion_measured import contradicts
 from mbsym.simulation.expanded import average_measured as measured
-from mbsym.source import read, to_yaml
-from mbsym_cli.main import main
+from mbsym.source import to_yaml
 
 PENDULUM = """
 mbsym: 1
@@ -254,15 +253,12 @@ def test_more_has_to_be_small_where_terms_grow():
 
 def test_the_command(tmp_path):
     out = tmp_path / "averaged.yaml"
-    done = CliRunner().invoke(main, ["average", "systems/shaken-pendulum.yaml", "--out", str(out)])
-    assert done.exit_code == 0, done.output
+    done = invoked("average", "systems/shaken-pendulum.yaml", "--out", out, code=0)
     assert "h^2 nu^2 - 2 l g > 0" in done.output
     assert "The averaged motion, not the motion itself, by problem 6" in done.output
-    system, complaints = read(out.read_text())
-    assert system is not None, complaints.sorted()
+    system = system_of(out.read_text())
     assert system.prescribed == ()
-    refused = CliRunner().invoke(main, ["average", "systems/double-pendulum.yaml", "--small", "q", "--time", "x"])
-    assert refused.exit_code == 2
+    refused = invoked("average", "systems/double-pendulum.yaml", "--small", "q", "--time", "x", code=2)
     assert {"--phase", "--small", "--time"} <= {line.split(":")[0] for line in refused.output.splitlines()}
 
 
@@ -270,8 +266,7 @@ def test_the_command_without_a_motion(tmp_path):
     path = tmp_path / "shaken.yaml"
     text = PENDULUM.format(pivot="[0, a*cos(phi), 0]", damper="damper: {coordinate: theta, coefficient: c}", theta="0")
     path.write_text(text.replace("motion: {theta: 0}\n", ""))
-    done = CliRunner().invoke(main, ["average", str(path), "--time", "0.1"])
-    assert done.exit_code == 0, done.output
+    done = invoked("average", path, "--time", "0.1", code=0)
     told = (
         "Of the stability of the averaged motion there is no result: the description gives no unperturbed motion (add"
     )
@@ -303,8 +298,7 @@ def test_relations_that_tie_what_is_small_or_large_are_refused(relation):
 
 def test_kapitza_s_potential_as_json():
     """m h^2 nu^2 sin(theta)^2/4 and the weight, m g l cos(theta), but for constants (Landau and Lifshitz, 30)."""
-    done = CliRunner().invoke(main, ["average", "systems/shaken-pendulum.yaml", "--json", "--time", "1"])
-    assert done.exit_code == 0, done.output
+    done = invoked("average", "systems/shaken-pendulum.yaml", "--json", "--time", "1", code=0)
     found = json.loads(done.stdout)
     assert list(Draft202012Validator(schema("average")).iter_errors(found)) == []
     theta, added = sympy.Symbol("theta"), sympy.sympify("m*h**2*nu**2*sin(theta)**2/4")

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from scipy.special import mathieu_a, mathieu_b
 
 import mbsym
@@ -19,7 +19,6 @@ from mbsym.numerics.orbits.floquet import Word, judged
 from mbsym.numerics.scenario import scenario
 from mbsym.report.words.expansion_measured import contradicts
 from mbsym.simulation.expanded import average_measured as measured
-from mbsym_cli.main import main
 
 PENDULUM = """
 mbsym: 1
@@ -147,13 +146,10 @@ def test_phases_that_do_not_turn_independently_are_refused():
 
 
 def test_the_command_takes_several_phases(tmp_path):
-    path = tmp_path / "pendulum.yaml"
-    path.write_text(PENDULUM.format(pivot="[b*sin(psi), a*cos(phi), 0]", om=283))
-    done = CliRunner().invoke(main, ["average", str(path), "--phase", "phi", "--phase", "psi"])
-    assert done.exit_code == 0
+    path = filed(tmp_path / "pendulum.yaml", PENDULUM.format(pivot="[b*sin(psi), a*cos(phi), 0]", om=283))
+    done = invoked("average", path, "--phase", "phi", "--phase", "psi", code=0)
     assert "Averaged over the phases phi, psi." in done.output
-    alone = CliRunner().invoke(main, ["average", str(path)])
-    assert alone.exit_code == 2
+    invoked("average", path, code=2)
 
 
 #: In x the coefficients of Mathieu's equation, phi = 2 tau:  a = 4 u/(m nu^2),  q = 2 v/(m nu^2).

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -20,7 +19,6 @@ from mbsym.analysis.scaled import Formulas
 from mbsym.expressions.place import Complaints
 from mbsym.problems import changes
 from mbsym.source.scaling import read_reduction, read_scaling
-from mbsym_cli.main import main
 
 #: (4) of the paper on gyrostat-fast.yaml, and its integrals (3).
 SCALE = (
@@ -242,8 +240,7 @@ def test_a_wrong_coefficient_anywhere_is_caught() -> None:
 def test_it_is_printed_with_checks_and_in_languages() -> None:
     path = str(SHIPPED / "spherical-pendulum.yaml")
     for language in ((), ("--latex",), ("--wolfram",), ("--python",)):
-        done = CliRunner().invoke(main, ["show", path, "--reduce", "psi' by integrals", *language])
-        assert done.exit_code == 0, done.output
+        done = invoked("show", path, "--reduce", "psi' by integrals", *language, code=0)
         assert "1. integrals used to eliminate variables" in done.output
         assert "satisfies the original equations" in done.output
 
@@ -261,7 +258,7 @@ def test_it_is_printed_with_checks_and_in_languages() -> None:
     ],
 )
 def test_complaints(steps: str, code: int, said: str, tmp_path: Path) -> None:
-    done = CliRunner().invoke(main, ["show", str(SHIPPED / "satellite-with-damper-slow.yaml"), "--reduce", steps])
+    done = invoked("show", SHIPPED / "satellite-with-damper-slow.yaml", "--reduce", steps)
     assert done.exit_code == code
     assert said in done.output
     assert "Traceback" not in done.output

@@ -20,15 +20,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from pathlib import Path
 
 import pytest
+from conftest import STATEMENTS
 
 import mbsym
 from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.words.claims import claim_line
 
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 STABLE, UNSTABLE, GROWS = "stable", "unstable", "growing like t"
 NEUTRAL = "stable, not asymptotically"
 RELATIONS: dict[str, Callable[[Fraction], bool]] = {
@@ -240,7 +239,7 @@ def test_what_is_said_of_a_condition_is_true_everywhere(kind: str) -> None:
 
 
 def outcomes(name: str) -> dict[tuple[str, str], ClaimResult]:
-    analysis = mbsym.load(CASES / f"{name}.yaml")
+    analysis = mbsym.load(STATEMENTS / f"{name}.yaml")
     return {(result.title.removeprefix("condition "), result.claim.role): result for result in analysis.claims}
 
 
@@ -325,7 +324,7 @@ def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called
 
 def test_no_root_to_the_left_does_not_mean_no_asymptotic_stability() -> None:
     """x'' - mu x' + x^2 x' + x = 0 at mu = 0: asymptotically stable by LaSalle's principle."""
-    analysis = mbsym.load(CASES / "soft.yaml")
+    analysis = mbsym.load(STATEMENTS / "soft.yaml")
     assert analysis.normal_forms.at_values.outcome == "asymptotically stable"
     remark = analysis.claims[0].remark
     assert "necessary for exponential stability (all roots to the left)" in remark
@@ -347,7 +346,7 @@ def test_systems_by_A_are_tried() -> None:
     for (_, role), result in found.items():
         a, b, c, d = (Fraction(x) for _, x in result.counterexample.at)
         assert (a * b > c * d) is (role == "necessary")
-    text = (CASES / "gov_A.yaml").read_text(encoding="utf-8").partition("claims:")[0]
+    text = (STATEMENTS / "gov_A.yaml").read_text(encoding="utf-8").partition("claims:")[0]
     right = "".join(f"  - {{claim: condition, that: a*b > c*d, as: {role}}}\n" for role in ("necessary", "sufficient"))
     necessary, sufficient = mbsym.loads(text + "claims:\n" + right).claims
     assert (necessary.holds, sufficient.outcome) == (True, Outcome.EXACT)
@@ -355,7 +354,7 @@ def test_systems_by_A_are_tried() -> None:
 
 def test_where_nothing_is_stable_a_necessary_condition_says_nothing() -> None:
     """V = a (x^2 - y^2)/2: for a != 0 a saddle (Earnshaw), for a = 0 nothing acts and the particle drifts."""
-    analysis = mbsym.load(CASES / "earnshaw.yaml")
+    analysis = mbsym.load(STATEMENTS / "earnshaw.yaml")
     assert analysis.stability.verdict.word == "unstable but for border cases"
     for result in analysis.claims:
         if result.claim.role == "necessary":
@@ -367,7 +366,7 @@ def test_where_borders_alone_are_stable_they_refute_and_nothing_else_is_told_of_
     """D = diag(a, -a) has trace 0: a root has a positive real part but for a = 0, where K > 0, that is b^2 < 3, makes
     these linear equations stable."""
     found = outcomes("never_hurwitz")
-    assert mbsym.load(CASES / "never_hurwitz.yaml").stability.verdict.word == "unstable but for border cases"
+    assert mbsym.load(STATEMENTS / "never_hurwitz.yaml").stability.verdict.word == "unstable but for border cases"
     for condition in ("a > 0", "b > 1", "b**2 > 3"):
         assert found[condition, "necessary"].outcome == Outcome.FAILS, condition
         at = dict(found[condition, "necessary"].counterexample.at)
@@ -384,7 +383,7 @@ def test_where_borders_alone_are_stable_they_refute_and_nothing_else_is_told_of_
 def test_a_whole_that_is_stable_in_every_case_does_not_depend() -> None:
     """Undamped parts with K > 0 beside one that friction damps where g != 0 (a != 0): one energy, which never grows."""
     for name, theorem in (("two_parts", "Lagrange-Dirichlet, Routh"), ("whole_dep", "Lagrange-Dirichlet")):
-        found = mbsym.load(CASES / f"{name}.yaml").stability
+        found = mbsym.load(STATEMENTS / f"{name}.yaml").stability
         assert (found.verdict.word, found.verdict.theorem) == ("stable", theorem)
         assert found.numerical.word == "stable"
     claims = outcomes("whole_dep")
@@ -396,7 +395,7 @@ def test_a_whole_that_is_stable_in_every_case_does_not_depend() -> None:
 
 def test_conditions_that_exclude_each_other_leave_nothing_stable() -> None:
     """K = diag(a - 1, -a): one of them is negative for every a."""
-    text = (CASES / "earnshaw.yaml").read_text(encoding="utf-8").partition("claims:")[0]
+    text = (STATEMENTS / "earnshaw.yaml").read_text(encoding="utf-8").partition("claims:")[0]
     text = text.replace("a*(x**2 - y**2)/2", "(a - 1)*x**2/2 - a*y**2/2")
     found = mbsym.loads(text).stability
     assert [part.theory.verdict.word for part in found.subsystems] == ["depends on the parameters"] * 2
@@ -406,7 +405,7 @@ def test_conditions_that_exclude_each_other_leave_nothing_stable() -> None:
 
 def test_equal_frequencies_of_a_potential_system_do_no_harm() -> None:
     """d = 0 is the round bowl; K > 0 iff k^2 > 5 d^2."""
-    analysis = mbsym.load(CASES / "bowl.yaml")
+    analysis = mbsym.load(STATEMENTS / "bowl.yaml")
     (part,) = analysis.stability.subsystems
     places = {r.label: r.place.name for r in part.theory.requirements if not r.always}
     assert places == {"v0": "NECESSARY", "discriminant": "HARMLESS"}

@@ -11,7 +11,7 @@ import random
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from test_claims import PENDULUM, analysed, judged
 
 import mbsym
@@ -20,7 +20,6 @@ from mbsym.report.words.claims import claim_line
 from mbsym.source.schema import json_schema
 from mbsym.source.text_writer import to_text
 from mbsym.source.yaml_writer import to_yaml
-from mbsym_cli.main import main
 
 DOUBLE_CASE = Path(__file__).parents[1] / "cases" / "statements" / "claims-from-doubles.yaml"
 VALUE = "claim: value, of: m*l/3, state: {m: 1, l: 1}, "  # 1/3
@@ -134,12 +133,11 @@ def test_tolerances_are_written_and_read(tmp_path: Path) -> None:
         assert [claim.digits for claim in claims] == [0, 5]
         assert claims == analysis.system.claims
     assert {"tolerance", "digits"} <= json_schema()["$defs"]["claim"]["properties"].keys()
-    explained = CliRunner().invoke(main, ["explain", "claims"]).stdout
+    explained = invoked("explain", "claims").stdout
     assert "tolerance  of a number at a state" in explained
-    path = tmp_path / "p.yaml"
-    path.write_text(PENDULUM + f"claims:\n  - {{{VALUE}equals: 0.333, tolerance: 4e-4}}\n", encoding="utf-8")
+    path = filed(tmp_path / "p.yaml", PENDULUM + f"claims:\n  - {{{VALUE}equals: 0.333, tolerance: 4e-4}}\n")
     words = ["run", str(path), "--out", str(tmp_path / "out"), "--problems", "1", "--format", "json", "-v"]
-    done = CliRunner().invoke(main, words, catch_exceptions=False)
+    done = invoked(*words)
     assert "holds within the tolerance (0.333333333333): 0.0004" in done.stdout
     (told,) = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["claims"]
     assert (told["word"], told["outcome"]) == ("held", "holds within the tolerance")

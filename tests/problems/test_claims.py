@@ -8,8 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-from conftest import SHIPPED, at_values, compiled_latex, needs_pdflatex
+from conftest import SHIPPED, at_values, compiled_latex, invoked, needs_pdflatex
 
 import mbsym
 from mbsym.algebra import ring
@@ -17,7 +16,6 @@ from mbsym.analysis import Analysis
 from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.latex.report import render as latex
 from mbsym.report.results_json import results
-from mbsym_cli.main import main
 
 #: A physical pendulum: T = (J + m l^2) theta'^2 / 2, U = m g l cos theta, m l^2 + J = Io.
 PENDULUM = """
@@ -249,22 +247,18 @@ def test_the_printed_formulas_of_the_satellite_hold() -> None:
 # --- reports and the command line ---
 
 
-def run(*words: object) -> Result:
-    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
-
-
 def test_a_refuted_claim_is_a_finding_unless_claims_are_strict(tmp_path: Path) -> None:
     good, bad = tmp_path / "good.yaml", tmp_path / "bad.yaml"
     good.write_text(PENDULUM + "claims:\n  - {claim: kinetic energy, equals: Io*theta_dot**2/2}\n")
     bad.write_text(PENDULUM + "claims:\n  - {claim: kinetic energy, equals: J*theta_dot**2/2, place: eq. (9)}\n")
     for path, strict, code in ((good, False, 0), (good, True, 0), (bad, False, 0), (bad, True, 1)):
         words = ["run", path, "--out", tmp_path / "out", "--format", "json", "--problems", "2"]
-        done = run(*words, *(["--strict-claims"] if strict else []))
+        done = invoked(*words, *(["--strict-claims"] if strict else []))
         assert done.exit_code == code, (path, strict, done.output)
         assert ("CLAIM DOES NOT HOLD: eq. (9): kinetic energy: differs" in done.stderr) == (code == 1)
-    done = run("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2")
+    done = invoked("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2")
     assert re.search(r"Claims +1 refuted\n +eq\. \(9\), kinetic energy: differs\n", done.stdout)
-    done = run("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2", "-v")
+    done = invoked("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2", "-v")
     assert "Claimed minus derived is" in done.stdout
     assert "at theta'^2: -m l^2/2" in done.stdout
     found = json.loads((tmp_path / "out" / "results.json").read_text())["claims"]
@@ -273,8 +267,7 @@ def test_a_refuted_claim_is_a_finding_unless_claims_are_strict(tmp_path: Path) -
 
 
 def test_explain_lists_the_kinds_of_claim() -> None:
-    done = run("explain", "claims")
-    assert done.exit_code == 0
+    done = invoked("explain", "claims", code=0)
     assert "first integral" in done.stdout
     assert "difference = claimed - derived" in done.stdout
 

@@ -11,8 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED, at_values, compiled_latex, needs_pdflatex
+from conftest import SHIPPED, at_values, compiled_latex, filed, invoked, needs_pdflatex
 from test_claims import PENDULUM, analysed, judged
 
 import mbsym
@@ -22,7 +21,6 @@ from mbsym.report.results_json import results
 from mbsym.report.words.claims import claim_line
 from mbsym.source.text_writer import to_text
 from mbsym.source.yaml_writer import to_yaml
-from mbsym_cli.main import main
 
 #: T = m (r'^2 + r^2 phi'^2)/2 and U = mu m / |r|.
 KEPLER = """
@@ -311,10 +309,9 @@ def test_what_holds_for_one_sign_is_told_to(claim: str, outcome: str, where: str
 
 
 def test_the_restriction_is_in_every_report(tmp_path: Path) -> None:
-    path = tmp_path / "kepler.yaml"
-    path.write_text(KEPLER + "claims:\n  - {claim: force function, equals: mu*m/r}\n", encoding="utf-8")
+    path = filed(tmp_path / "kepler.yaml", KEPLER + "claims:\n  - {claim: force function, equals: mu*m/r}\n")
     words = ["run", "-v", str(path), "--out", str(tmp_path / "out"), "--problems", "1-3", "--format", "json,latex"]
-    done = CliRunner().invoke(main, words, catch_exceptions=False)
+    done = invoked(*words)
     assert "force function | holds exactly for r > 0 (it does not for r < 0)" in done.stdout
     (written,) = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["claims"]
     assert (written["word"], written["where"]) == ("held", "for r > 0 (it does not for r < 0)")

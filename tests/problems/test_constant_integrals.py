@@ -6,16 +6,14 @@ p_b = dT/db' = 0 identically.  Where q has a mass M, p_b = M (x' + b') is an int
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.polynomial import setting
 from mbsym.problems.integrals import by_structure
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 CARRIED = """
 mbsym: 1
 name: carried
@@ -59,7 +57,7 @@ def test_problem_9_says_that_the_mass_matrix_is_singular() -> None:
 
 def test_integrals_that_follow_with_factors_of_parameters_are_not_listed() -> None:
     """A ball rolls: y' = -r w1, so that J w1 - m r y' = -(m r + J/r) y' says what m y' says."""
-    found = mbsym.load(SYSTEMS / "rolling-sphere-speeds.yaml", (7,)).integrals
+    found = mbsym.load(SHIPPED / "rolling-sphere-speeds.yaml", (7,)).integrals
     momenta = [one.name for one in found if one.kind in ("linear momentum", "angular momentum")]
     assert momenta == ["linear momentum along axis 1", "linear momentum along axis 2", "angular momentum about axis 3"]
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import system_of
 from scipy.optimize import fsolve
 
 import mbsym
@@ -19,7 +20,6 @@ from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
 from mbsym.problems.stability.words import Because
-from mbsym.source import read
 
 HEAD = "mbsym: 1\nname: Tied\n"
 
@@ -107,8 +107,7 @@ constraints: [{relation: r*sin(a) + l*sin(a + b) = 0}]
 
 
 def listed(text: str, **values: Fraction | int) -> Equilibria:
-    system = read(text)[0]
-    assert system is not None
+    system = system_of(text)
     return relative_equilibria(system, given_values(system, {name: Fraction(x) for name, x in values.items()}))
 
 

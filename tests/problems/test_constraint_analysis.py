@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import system_of
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
@@ -25,7 +26,6 @@ from mbsym.problems.constraints import Constraints, Embedded, faults
 from mbsym.problems.constraints import analysis as analysis_module
 from mbsym.problems.constraints.checks import check_embedded, check_rows
 from mbsym.problems.constraints.integrability import by_program
-from mbsym.source import read
 
 SLEIGH = """
 mbsym: 1
@@ -379,8 +379,7 @@ def test_loops_apart_are_solved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
             bar.format(f"C{k}", 0, 9 * k + 2, f"r{k}"),
         ]
         ties.append(f"  - coincide: [{{body: B{k}, point: [2, 0, 0]}}, {{body: C{k}, point: [3/2, 0, 0]}}]")
-    system, _ = read("\n".join(["mbsym: 1", "name: loops", "bodies:", *bodies, "constraints:", *ties]))
-    assert system is not None
+    system = system_of("\n".join(["mbsym: 1", "name: loops", "bodies:", *bodies, "constraints:", *ties]))
     tried = 0
     plain = analysis_module.eliminated
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import cosh, tanh
 
 import pytest
+from conftest import analysed
 from kinds_of_constraints import BODIES, KINDS
 
 import mbsym
 from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.checks import EXACT, NUMERICAL
-from mbsym.source import read
 
 #: Without multipliers their equations outgrow the budget, and nobody has them to check.
 LONG = {"parallel", "rolling on a body"}
@@ -25,9 +25,7 @@ def in_speeds(kind: str, orientation: str) -> Analysis:
     arm = ARM[:-1] + f", speeds: {{p: omega1, q: omega2, n: omega3}}, orientation: {orientation}}}"
     wheel = WHEEL[:-1] + ", speeds: {k: omega1, w: omega3, h: x_dot + y*phi_dot}}"
     text = BODIES.replace(ARM, arm).replace(WHEEL, wheel) + f"  - {KINDS[kind]}\n"
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
-    return Analysis(system, (3,))
+    return analysed(text, (3,))
 
 
 @pytest.mark.parametrize("orientation", ["angles", "direction cosines"])

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import SHIPPED, filed, invoked, system_of
 from jsonschema import Draft202012Validator
 
 import mbsym
@@ -20,12 +20,8 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.model.scaling import Scaling
 from mbsym.model.system import System
 from mbsym.report.schemas import schema
-from mbsym.source import read
 from mbsym.source.scaling import read_scaling
 from mbsym.studies.groups import in_scale
-from mbsym_cli.main import main
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 #: theta'' + 2 zeta theta' + sin(theta) = 0 of (J + m l^2) theta'' + b theta' + m g l sin(theta) = 0, divided through.
 PENDULUM = "theta=phi,t=tau/w,J=j*m*l**2,g=l*(1+j)*w**2,b=2*zeta*m*l**2*(1+j)*w"
@@ -45,20 +41,19 @@ def scaling(system: System, text: str) -> Scaling:
 
 
 def shown(*arguments: str) -> str:
-    done = CliRunner().invoke(main, ["show", *arguments])
-    assert done.exit_code == 0, done.output
+    done = invoked("show", *arguments, code=0)
     return done.output
 
 
 def test_the_pendulum_divided_through_by_hand() -> None:
-    path = str(SYSTEMS / "simple-pendulum.yaml")
+    path = str(SHIPPED / "simple-pendulum.yaml")
     assert shown(path, "equations", "--scale", PENDULUM) == "(j + 1) (phi'' + 2 zeta phi' + sin(phi)) = 0\n"
     assert shown(path, "T", "K", "--scale", PENDULUM) == "T = (j + 1) phi'^2/2\nK = j + 1\n"
 
 
 def test_the_spring_pendulum_divided_through_by_hand() -> None:
     """x = r/l0, nu = m g/(k l0):  x'' - x theta'^2 + x - 1 = nu cos(theta),  (x^2 theta')' + nu x sin(theta) = 0."""
-    told = shown(str(SYSTEMS / "spring-pendulum.yaml"), "equations", "--scale", SPRING)
+    told = shown(str(SHIPPED / "spring-pendulum.yaml"), "equations", "--scale", SPRING)
     assert told == "x (theta'' x + 2 theta' x' + nu sin(theta)) = 0\nx'' + x - theta'^2 x - nu cos(theta) - 1 = 0\n"
 
 
@@ -76,7 +71,7 @@ AREA = "eps*(a*p1*h1 + b*q1*h2 + y1*h1) + (r1 + nz)*h3"
 
 def test_the_equations_5_of_the_fast_gyrostat() -> None:
     """And the area integral of (6), (7); they are those of the paper, identically."""
-    system = mbsym.load(SYSTEMS / "gyrostat-fast.yaml").system
+    system = mbsym.load(SHIPPED / "gyrostat-fast.yaml").system
     found = Formulas(system, scaling(system, GYROSTAT))
     lower = Lowering(found.ring, ring_environment(found.system, found.ring))
 
@@ -89,7 +84,7 @@ def test_the_equations_5_of_the_fast_gyrostat() -> None:
     assert [found.row(x).polynomial for x in rows] == [printed(text) for text in PRINTED]
     area = next(x.formula for x in found.analysis.integrals if "angular momentum" in x.name)
     assert found.row(area, constant=True).polynomial == printed(AREA)
-    told = shown(str(SYSTEMS / "gyrostat-fast.yaml"), "--scale", GYROSTAT)
+    told = shown(str(SHIPPED / "gyrostat-fast.yaml"), "--scale", GYROSTAT)
     assert "h1' = r1 h2 - eps q1 h3\n" in told
     with pytest.raises(NoDescription, match="unit vector"):
         in_variables(system, scaling(system, GYROSTAT))
@@ -109,7 +104,7 @@ def test_the_equations_5_of_the_fast_gyrostat() -> None:
 )
 def test_scaled_equations_are_those_of_the_system(name: str, text: str) -> None:
     """``in_variables`` demands it identically in the ring; here it is seen that a slip shows."""
-    system = mbsym.load(SYSTEMS / f"{name}.yaml").system
+    system = mbsym.load(SHIPPED / f"{name}.yaml").system
     own = scaling(system, text)
     found = in_scale(system, own)
     assert not {one.name for one in own.variables if one.name != one.new} & {*found.coordinates, *found.variables}
@@ -126,7 +121,7 @@ def test_scaled_equations_are_those_of_the_system(name: str, text: str) -> None:
 
 def test_scaled_systems_have_scaled_solutions() -> None:
     """Both are integrated to 1e-12; x(tau) = r(tau/w)/l0 with w^2 = k/m = 40, to all those digits."""
-    analysis = mbsym.load(SYSTEMS / "spring-pendulum.yaml")
+    analysis = mbsym.load(SHIPPED / "spring-pendulum.yaml")
     there = Analysis(in_scale(analysis.system, scaling(analysis.system, "r=l0/2*x,t=tau/w,k=m*w**2,g=l0*w**2*nu")))
     rate = 40**0.5
     theta, r = mbsym.simulate(analysis, 2, accuracy=1e-12).coordinates[:, -1]
@@ -161,8 +156,7 @@ motion: {r: REST}
 
 @pytest.mark.parametrize("text", [LITERAL, MOTION.replace("REST", "1/2")])
 def test_a_number_with_a_dimension_has_no_place_among_dimensionless_ones(text: str) -> None:
-    system, _ = read(text)
-    assert system is not None
+    system = system_of(text)
     if text is not LITERAL:
         with pytest.raises(NoDescription, match="numbers that have a dimension"):
             in_variables(system, scaling(system, "r=l*x,t=tau/w,k=m*w**2,c=m*w*d"))
@@ -173,7 +167,7 @@ def test_a_number_with_a_dimension_has_no_place_among_dimensionless_ones(text: s
 
 def test_what_nothing_measures_is_named() -> None:
     """The sleigh's speed v may have either sign, and no other name holds the time."""
-    system = mbsym.load(SYSTEMS / "chaplygin-sleigh.yaml").system
+    system = mbsym.load(SHIPPED / "chaplygin-sleigh.yaml").system
     with pytest.raises(NoDescription, match="measures v"):
         in_variables(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j"))
     assert in_scale(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j,t=tau*a/u,v=u*w"))
@@ -181,8 +175,7 @@ def test_what_nothing_measures_is_named() -> None:
 
 def test_signs_go_over_to_what_is_put_in() -> None:
     """d = c/(m w) has the sign of c; where the sign of a name does not follow it is assumed of the expression."""
-    system, _ = read(MOTION.replace("REST", "l"))
-    assert system is not None
+    system = system_of(MOTION.replace("REST", "l"))
     found = in_scale(system, scaling(system, "r=l*x,t=tau/w,k=m*w**2,c=m*w*d"))
     assert [(one.name, one.sign) for one in found.parameters] == [("d", "nonnegative")]
     assert found.assumptions == ()
@@ -210,36 +203,34 @@ def test_signs_go_over_to_what_is_put_in() -> None:
 )
 def test_what_is_wrong_is_said_at_its_place(text: str, code: str, place: int, words: str) -> None:
     complaints = Complaints()
-    assert read_scaling(text, mbsym.load(SYSTEMS / "spring-pendulum.yaml").system, complaints) is None
+    assert read_scaling(text, mbsym.load(SHIPPED / "spring-pendulum.yaml").system, complaints) is None
     first = complaints.sorted()[0]
     assert (first.code, first.span and first.span.column - 1) == (code, place), first
     assert words in str(first.message)
 
 
 def test_groups_propose_a_scaling_that_converts(tmp_path: Path) -> None:
-    path = str(SYSTEMS / "double-pendulum.yaml")
-    told = CliRunner().invoke(main, ["groups", path], env={"COLUMNS": "70"}).output
+    path = str(SHIPPED / "double-pendulum.yaml")
+    told = invoked("groups", path, env={"COLUMNS": "70"}).output
     (line,) = (one for one in told.splitlines() if "--scale" in one)  # in one line, as it is pasted
     proposal = line.partition('--scale "')[2].partition('"')[0]
     assert proposal == "t=tau/sqrt(g/l1),m2=m1*m2_hat,l2=l1*l2_hat"
     out = tmp_path / "scaled.yaml"
-    done = CliRunner().invoke(main, ["convert", path, "--scale", proposal, "--out", str(out)])
-    assert done.exit_code == 0, done.output
-    system, complaints = read(out.read_text())
-    assert system is not None, complaints.items
+    invoked("convert", path, "--scale", proposal, "--out", out, code=0)
+    system = system_of(out.read_text())
     assert set(system.parameter_names) == {"m2_hat", "l2_hat"}
 
 
 def test_a_run_in_dimensionless_variables_tells_its_units_and_names_no_physical_time(tmp_path: Path) -> None:
     """x'' + x = 0 in t omega: its roots are +- i, whatever omega is in seconds."""
-    path = tmp_path / "a.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "a.yaml",
         "mbsym: 1\nname: mass\nparameters: {m: {sign: positive, value: 2}, k: {sign: positive, value: 8}}\n"
         "bodies: [{name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}]\n"
-        "loads: [{spring: {coordinate: x, stiffness: k}}]\nmotion: {x: 0}\n"
+        "loads: [{spring: {coordinate: x, stiffness: k}}]\nmotion: {x: 0}\n",
     )
     asked = ["run", str(path), "--scale", "t=s/w,k=m*w**2", "-p", "5,6", "-v", "--format", "json"]
-    told = CliRunner().invoke(main, [*asked, "--out", str(tmp_path / "out")]).output
+    told = invoked(*asked, "--out", tmp_path / "out").output
     assert "mass, in units in which w = 1, m = 1" in told
     assert "Eigenvalues there, in the time t, of x: +- 1 i" in " ".join(told.split())
     assert "physical" not in told
@@ -254,8 +245,7 @@ def test_groups_as_json_have_no_dimension() -> None:
             sum((Fraction(x) * dimensions[name][axis] for name, x in powers.items()), Fraction(0)) for axis in range(3)
         ]
 
-    done = CliRunner().invoke(main, ["groups", str(SYSTEMS / "spring-pendulum.yaml"), "--json"])
-    assert done.exit_code == 0, done.output
+    done = invoked("groups", SHIPPED / "spring-pendulum.yaml", "--json", code=0)
     found = json.loads(done.stdout)
     assert list(Draft202012Validator(schema("groups")).iter_errors(found)) == []
     assert len(found["groups"]) == 1

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from conftest import SHIPPED, WITH_BODIES, at_values, reference
+from conftest import SHIPPED, WITH_BODIES, at_values, filed, reference
 from flint import arb, fmpq
 from test_spectrum import SHAFT
 
@@ -629,8 +629,7 @@ def test_command_prints_json() -> None:
 
 def test_every_missing_value_is_named(tmp_path: Path) -> None:
     text = "\n".join(x for x in TOP.splitlines() if not x.startswith("values"))
-    path = tmp_path / "top.yaml"
-    path.write_text(text)
+    path = filed(tmp_path / "top.yaml", text)
     result = run(str(path), "--set", "A=3")
     assert result.exit_code == 2
     assert "C, m, l, g, Omega, sigma" in result.stderr
@@ -848,8 +847,7 @@ values: {x0: pi/6, k: 2}
 
 def test_irrational_values_are_taken_exactly(tmp_path: Path) -> None:
     """k sin x = k sin x0: x0 and pi - x0, stable where cos x > 0."""
-    file = tmp_path / "x0.yaml"
-    file.write_text(IRRATIONAL, encoding="utf-8")
+    file = filed(tmp_path / "x0.yaml", IRRATIONAL)
     for options, places in (((), ("pi/6", "5*pi/6")), (("--set", "x0=pi/4"), ("pi/4", "3*pi/4"))):
         found = json.loads(CliRunner().invoke(command_of(STUDY), [str(file), "--json", *options]).stdout)
         assert found["complete"]

@@ -7,21 +7,18 @@ from dataclasses import replace
 from fractions import Fraction as F
 
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, analysed
 
 import mbsym
 from mbsym.algebra.failures import GivenByMatrices
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.problems import given_system, stability
 from mbsym.problems.checks import EXACT, NUMERICAL
-from mbsym.source import read
 
 
 def given(matrices: str, parameters: str = "{}", more: str = "") -> Analysis:
     text = f"mbsym: 1\nname: Given\nparameters: {parameters}\n{more}\nlinear system: {matrices}\n"
-    system, complaints = read(text)
-    assert system is not None, [one.message for one in complaints]
-    return Analysis(system)
+    return analysed(text)
 
 
 def word(analysis: Analysis, **values: F | int) -> str:

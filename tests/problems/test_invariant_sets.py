@@ -9,7 +9,7 @@ from itertools import permutations, product
 import numpy as np
 import pytest
 import sympy
-from conftest import SHIPPED
+from conftest import SHIPPED, filed
 
 import mbsym
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
@@ -38,8 +38,7 @@ loads:
 
 def _heavy(tmp_path, parameters, centre, inertia):
     signs = ", ".join(f"{name}: {{sign: {'real' if name.endswith('0') else 'positive'}}}" for name in parameters)
-    path = tmp_path / "heavy.yaml"
-    path.write_text(HEAVY.format(parameters=signs, centre=centre, inertia=inertia))
+    path = filed(tmp_path / "heavy.yaml", HEAVY.format(parameters=signs, centre=centre, inertia=inertia))
     return mbsym.load(path)
 
 

@@ -7,13 +7,12 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 
 import mbsym
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, StationarySet
 from mbsym.problems.invariant_sets.branches import identifiers
-from mbsym_cli.main import main
 
 
 def value(formula, **numbers):
@@ -139,8 +138,7 @@ def test_branches_without_points_are_not_counted(top):
 
 def test_sines_are_written_as_such_but_for_names_in_json(tmp_path):
     words = "run systems/double-pendulum.yaml --problems 10 --format html,latex,json --out"
-    done = CliRunner().invoke(main, [*words.split(), str(tmp_path)])
-    assert done.exit_code == 0
+    done = invoked(*words.split(), tmp_path, code=0)
     assert "sin(theta1)^2 + cos(theta1)^2 - 1 = 0" in done.output
     assert "_theta" not in done.output
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

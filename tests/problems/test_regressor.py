@@ -11,8 +11,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 
 import mbsym
 from mbsym.algebra.failures import Failure, Limit, NoClosedForm
@@ -25,7 +24,6 @@ from mbsym.problems import regressor as problem
 from mbsym.problems.regressor import regressor
 from mbsym.report.regressor_files import regressor_latex, sum_of
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 #: Rows of modified Denavit-Hartenberg parameters, alpha (quarter turns), d, r, and R or P.
 Rows = list[tuple[int, str, str, str]]
@@ -270,15 +268,14 @@ loads: [{uniform gravity: {vector: [0, 0, -g]}}]
 def test_what_is_refused(file: str, reason: str) -> None:
     with pytest.raises(Failure, match=reason):
         regressor(mbsym.load(SHIPPED / file, problems=()).scene)
-    done = CliRunner().invoke(main, ["regressor", str(SHIPPED / file)])
+    done = invoked("regressor", SHIPPED / file)
     assert done.exit_code in (1, 2)
     assert "Traceback" not in done.output
 
 
 def test_the_command_writes_what_its_schema_says(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    done = CliRunner().invoke(main, ["regressor", str(SHIPPED / "double-pendulum.yaml"), "--out", str(out)])
-    assert done.exit_code == 0, done.output
+    done = invoked("regressor", SHIPPED / "double-pendulum.yaml", "--out", out, code=0)
     assert "6 of 20 parameters" in done.stdout
     data = json.loads((out / "regressor.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, schema("regressor"))

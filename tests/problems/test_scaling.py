@@ -6,7 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import SHIPPED, invoked
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -15,13 +15,10 @@ from mbsym.expressions.tree import substitute, text
 from mbsym.model.system import rational
 from mbsym.problems.scaling import Group, Groups, groups, linear_groups
 from mbsym.problems.stability.problem import prepared_parts
-from mbsym_cli.main import main
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 
 def analysed(name: str) -> Analysis:
-    return mbsym.load(SYSTEMS / f"{name}.yaml")
+    return mbsym.load(SHIPPED / f"{name}.yaml")
 
 
 def found(name: str) -> Groups:
@@ -105,10 +102,9 @@ def test_a_wrong_group_is_noticed() -> None:
 
 def test_the_command_writes_a_description_that_runs(tmp_path: Path) -> None:
     out = tmp_path / "groups.yaml"
-    done = CliRunner().invoke(main, ["groups", str(SYSTEMS / "spring-pendulum.yaml"), "--out", str(out)])
-    assert done.exit_code == 0, done.output
+    done = invoked("groups", SHIPPED / "spring-pendulum.yaml", "--out", out, code=0)
     assert "g stands for g*m/(k*l0)" in done.output
-    again = CliRunner().invoke(main, ["groups", str(out)])
+    again = invoked("groups", out)
     assert "g = 1" not in again.output  # what is a group stays one
     assert "1 parameter, 0 of them set to 1: 1 group" in again.output
 
@@ -164,6 +160,6 @@ def test_what_may_vanish_is_not_set_to_1_and_scalings_left_over_are_told(tmp_pat
     assert (told["block"].units, told["block"].unused, len(told["block"].groups)) == (("m",), 1, 2)
     # With k as it is, m -> s m needs t -> sqrt(s) t: b/sqrt(m) does not change.
     assert {one.parameter: dict(one.powers) for one in told["block"].groups} == {"k": {}, "b": {"m": Fraction(-1, 2)}}
-    done = CliRunner().invoke(main, ["groups", str(tmp_path / "block.yaml")])
+    done = invoked("groups", tmp_path / "block.yaml")
     assert "at most 2 groups" in done.output
     assert "1 scaling more is not used" in done.output

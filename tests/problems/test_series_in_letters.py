@@ -8,7 +8,7 @@ from math import factorial
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import SHIPPED, filed, invoked, system_of
 
 from mbsym.algebra.base import Lowering
 from mbsym.analysis import Analysis, oscillating
@@ -17,11 +17,8 @@ from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ONE, names, substitute
 from mbsym.model.system import rational
-from mbsym.source import read
 from mbsym.source.scaling import read_scaling
-from mbsym_cli.main import main
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 #: (4) of the paper on gyrostat-fast.yaml without the powers of eps, which stand before the coefficients.
 GYROSTAT = (
     "p=r_0*p1,q=r_0*q1,r=r_0*r1,gamma1=gamma3_0*h1,gamma2=gamma3_0*h2,gamma3=gamma3_0*h3,t=tau/r_0,A=a*C,B=b*C,x0=L*x,"
@@ -51,8 +48,7 @@ motion: {theta: 0}
 
 def told(text: str, order: int, scale: str) -> tuple[Oscillating, Oscillating]:
     """The solution, and the same in other variables."""
-    system, _ = read(text)
-    assert system is not None
+    system = system_of(text)
     found = oscillating.oscillating(Analysis(system), order)
     scaling = read_scaling(scale, system, Complaints())
     assert scaling is not None
@@ -61,7 +57,7 @@ def told(text: str, order: int, scale: str) -> tuple[Oscillating, Oscillating]:
 
 @pytest.fixture(scope="module")
 def gyrostat() -> tuple[Oscillating, Oscillating]:
-    return told((SYSTEMS / "gyrostat-fast.yaml").read_text(), 2, GYROSTAT)
+    return told((SHIPPED / "gyrostat-fast.yaml").read_text(), 2, GYROSTAT)
 
 
 #: The right solution in the place of (41), by hand and with sympy (references: gyrostat, 2.2), in the paper's symbols.
@@ -207,30 +203,27 @@ def test_the_pendulums_period_to_the_order_eight() -> None:
 
 
 def test_the_command_tells_them(tmp_path: Path) -> None:
-    path = tmp_path / "duffing.yaml"
-    path.write_text(DUFFING)
+    path = filed(tmp_path / "duffing.yaml", DUFFING)
     scale = "t=tau/w,k=m*w**2,x=X*x1,c=m*w**2*q/X**2"
-    done = CliRunner().invoke(main, ["oscillations", str(path), "--scale", scale])
-    assert done.exit_code == 0, done.output
+    done = invoked("oscillations", path, "--scale", scale, code=0)
     assert "x1(1) = -q amplitude^3 sin(phase)^2 cos(phase)/8" in done.output
-    data = json.loads(CliRunner().invoke(main, ["oscillations", str(path), "--scale", scale, "--json"]).output)
+    data = json.loads(invoked("oscillations", path, "--scale", scale, "--json").output)
     assert data["corrections"] == ["3*q*amplitude**2/8", "-21*q**2*amplitude**4/256"]
-    wrong = CliRunner().invoke(main, ["oscillations", str(path), "--scale", "x=eps*X*x1"])
-    assert wrong.exit_code == 2
+    wrong = invoked("oscillations", path, "--scale", "x=eps*X*x1", code=2)
     assert "eps is the small parameter" in wrong.output
 
 
 def test_common_denominators_stand_once_in_the_text() -> None:
-    words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
-    done = CliRunner().invoke(main, [*words, "--in", "none"])
+    words = ["oscillations", str(SHIPPED / "gyrostat-fast.yaml"), "--order", "1"]
+    done = invoked(*words, "--in", "none")
     assert "p(0) = -lx r_0/D1\n" in done.output
     assert "D1 = r_0 (A - C) - lz\n" in done.output
 
 
 def test_the_authors_letters_come_before_denominators_of_ours() -> None:
     """(41) of the paper: what is shorter in them has no D1, and no D is explained that does not stand there."""
-    words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
-    done = CliRunner().invoke(main, words).output
+    words = ["oscillations", str(SHIPPED / "gyrostat-fast.yaml"), "--order", "1"]
+    done = invoked(*words).output
     assert "p(0) = P0 r_0\n" in done
     assert "gamma2(1) = P0 gamma3_0 sin(phase)\n" in done
     assert "p(1) = r_0 (M3 lam1 cos(phase) + lam)\n" in done  # as in the claim (41)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.algebra.ring import Polynomial
@@ -14,7 +14,6 @@ from mbsym.analysis import Analysis, approximation
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.checks import Check
 from mbsym.problems.equilibrium import Displacement
-from mbsym_cli.main import main
 
 TOP = """mbsym: 1
 name: top
@@ -47,8 +46,7 @@ POINT = (
 
 
 def found(folder: Path, bodies: str, gravity: str, motion: str) -> Analysis:
-    path = folder / "top.yaml"
-    path.write_text(TOP.format(bodies=bodies, gravity=gravity, motion=motion))
+    path = filed(folder / "top.yaml", TOP.format(bodies=bodies, gravity=gravity, motion=motion))
     return mbsym.load(path, (3, 4))
 
 
@@ -118,8 +116,7 @@ def test_loads_on_angles_themselves_are_in_balance_where_they_vanish(load: str, 
 def test_the_summary_tells_whose_angles_are_judged(tmp_path: Path) -> None:
     """theta and phi lean in the angles 3, 1, 2; in those of the description phi turns about the vertical and drifts."""
     found(tmp_path, turned("[3, 1, 3]", LIGHT), "0, 0, -g", "theta: 0")
-    done = CliRunner().invoke(main, ["run", str(tmp_path / "top.yaml"), "--out", str(tmp_path / "out")])
-    assert done.exit_code == 0
+    done = invoked("run", tmp_path / "top.yaml", "--out", tmp_path / "out", code=0)
     assert "phi: unstable" in done.output
     assert "about axes 3, 1, 2 by psi, theta, phi" in " ".join(done.output.split())
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import terminal
+from conftest import filed
 
 import mbsym
 from mbsym.algebra.vectors import Tensor
@@ -46,8 +47,7 @@ CHECKED = ("kinematics", "energy", "equations of motion", "straight-line program
 
 
 def load(tmp_path, text):
-    file = tmp_path / "system.yaml"
-    file.write_text(text)
+    file = filed(tmp_path / "system.yaml", text)
     return mbsym.load(file)
 
 
@@ -267,8 +267,7 @@ def module_of(found, tmp_path):
 
     from mbsym.report.code.python_module import render
 
-    file = tmp_path / "model.py"
-    file.write_text(render(found, (3,)))
+    file = filed(tmp_path / "model.py", render(found, (3,)))
     spec = spec_from_file_location("model_in_speeds", file)
     module = module_from_spec(spec)
     spec.loader.exec_module(module)

@@ -11,7 +11,7 @@ from typing import Any
 import hypothesis
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, system_of
 from flint import fmpq, fmpq_mat
 from hypothesis import given
 from hypothesis import strategies as st
@@ -31,13 +31,11 @@ from mbsym.report.plain_writer import Writer
 from mbsym.report.results_json import results
 from mbsym.report.schemas import schema
 from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
-from mbsym.source import read
 
 
 def analysed(matrices: str, parameters: str = "{}", more: str = "") -> Analysis:
     text = f"mbsym: 1\nname: Given\nparameters: {parameters}\n{more}\nlinear system: {matrices}\n"
-    system, complaints = read(text)
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(text)
     return Analysis(system)
 
 

@@ -9,13 +9,12 @@ from typing import Any
 
 import pytest
 import sympy
-from click.testing import CliRunner
+from conftest import filed, invoked
 from jsonschema import Draft202012Validator
 
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.report.schemas import schema
-from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: Held\n"
 
@@ -125,12 +124,10 @@ def test_no_value_holds_what_nothing_acts_on() -> None:
 
 
 def test_the_command_prints_it(tmp_path: Any) -> None:
-    path = tmp_path / "held.yaml"
-    path.write_text(PENDULUM)
-    done = CliRunner().invoke(main, ["trim", str(path), "--solve", "tau"])
-    assert done.exit_code == 0
+    path = filed(tmp_path / "held.yaml", PENDULUM)
+    done = invoked("trim", path, "--solve", "tau", code=0)
     assert "tau = m l g cos(a)" in done.output
-    assert CliRunner().invoke(main, ["trim", str(path), "--solve", "zeta"]).exit_code == 2
+    assert invoked("trim", path, "--solve", "zeta").exit_code == 2
 
 
 @pytest.mark.parametrize(
@@ -143,13 +140,13 @@ def test_the_command_prints_it(tmp_path: Any) -> None:
 )
 def test_a_value_has_the_sign_that_is_declared(sign: str, printed: str, code: int, tmp_path: Any) -> None:
     """A mass at rest in the air: m g = 0, so g = 0, which a positive g is not."""
-    path = tmp_path / "air.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "air.yaml",
         f"mbsym: 1\nname: Air\nparameters: {{m: positive, g: {sign}}}\nbodies:\n"
         "  - {name: a, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}\n"
-        "loads:\n  - uniform gravity: {vector: [0, -g, 0]}\nmotion: {y: 0}\n"
+        "loads:\n  - uniform gravity: {vector: [0, -g, 0]}\nmotion: {y: 0}\n",
     )
-    done = CliRunner().invoke(main, ["trim", str(path), "--solve", "g"])
+    done = invoked("trim", path, "--solve", "g")
     assert (done.exit_code, printed in done.output) == (code, True), done.output
 
 
@@ -192,20 +189,17 @@ motion: {x: x0, y: y0}
 def test_what_is_held_is_told_and_divisors_leave_open_what_they_exclude(
     text: str, name: str, lines: list[str], tmp_path: Any
 ) -> None:
-    file = tmp_path / "a.yaml"
-    file.write_text(text)
-    done = CliRunner().invoke(main, ["trim", str(file), "--solve", name])
+    file = filed(tmp_path / "a.yaml", text)
+    done = invoked("trim", file, "--solve", name)
     assert not {line.strip() for line in lines} - {line.strip() for line in done.output.splitlines()}, done.output
 
 
 def test_what_holds_a_pendulum_as_json(tmp_path: Any) -> None:
     """tau = m g l cos(a) by virtual work, F at rest; with both asked for one of them is free."""
-    path = tmp_path / "held.yaml"
-    path.write_text(PENDULUM, encoding="utf-8")
+    path = filed(tmp_path / "held.yaml", PENDULUM)
     torque = sympy.sympify("m*g*l*cos(a)")
     for options, free in ((["--solve", "tau"], set()), ([], {"tau", "F"})):
-        done = CliRunner().invoke(main, ["trim", str(path), "--json", *options])
-        assert done.exit_code == 0, done.output
+        done = invoked("trim", path, "--json", *options, code=0)
         found = json.loads(done.stdout)
         assert list(Draft202012Validator(schema("trim")).iter_errors(found)) == []
         assert found["possible"] is True
@@ -221,6 +215,5 @@ def test_where_no_values_hold_it_json_says_so(tmp_path: Any) -> None:
     path = tmp_path / "held.yaml"
     text = PENDULUM.replace("{q: tau + 2*F}", "{q: 0*tau}").replace("motion: {q: a}", "motion: {q: 0}")
     path.write_text(text, encoding="utf-8")
-    done = CliRunner().invoke(main, ["trim", str(path), "--json"])
-    assert done.exit_code == 1, done.output
+    done = invoked("trim", path, "--json", code=1)
     assert json.loads(done.stdout)["possible"] is False

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import SHIPPED
 from flint import arb
 
 import mbsym
@@ -19,14 +20,13 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.checks import EXACT, NUMERICAL
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 REFERENCES = Path(__file__).parents[1] / "references"
 NAMES = ("four-bar", "rolling-disc", "chaplygin-sleigh", "rolling-sphere", "cartesian-pendulum")
 
 
 @cache
 def analysis_of(name: str) -> Analysis:
-    return mbsym.load(SYSTEMS / f"{name}.yaml", (1, 2, 3))
+    return mbsym.load(SHIPPED / f"{name}.yaml", (1, 2, 3))
 
 
 def reference(name: str) -> Any:

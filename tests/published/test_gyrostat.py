@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 import sympy
-from conftest import SHIPPED, Exact, at_values, precision, reference, with_values
+from conftest import SHIPPED, Exact, at_values, precision, reference, system_of, with_values
 from flint import arb, fmpq, fmpq_poly
 from test_self_check import Mistake, plant
 
@@ -68,25 +68,19 @@ loads:
 # --- the gyrostatic moment ---
 
 
-def good(text: str, filename: str) -> System:
-    system, complaints = read(text, filename)
-    assert system is not None, [item.message for item in complaints.items]
-    return system
-
-
 @pytest.mark.parametrize("text", [TWO_GYROSTATS, *(path.read_text(encoding="utf-8") for path in (GYROSTAT, CLEBSCH))])
 def test_both_spellings_keep_it(text: str) -> None:
-    system = good(text, "x.yaml")
-    assert good(to_yaml(system), "x.yaml") == system
-    assert good(to_text(system), "x.txt") == system
+    system = system_of(text, "x.yaml")
+    assert system_of(to_yaml(system), "x.yaml") == system
+    assert system_of(to_text(system), "x.txt") == system
 
 
 def test_zero_is_no_gyrostatic_moment() -> None:
     text = GYROSTAT.read_text(encoding="utf-8")
     without = text.replace("    gyrostatic moment: [lx, 0, lz]\n", "")
     zero = text.replace("gyrostatic moment: [lx, 0, lz]", "gyrostatic momentum: [0, 0, 0.0]")
-    assert good(zero, "x.yaml").bodies == good(without, "x.yaml").bodies
-    assert good(text, "x.yaml").bodies != good(without, "x.yaml").bodies
+    assert system_of(zero, "x.yaml").bodies == system_of(without, "x.yaml").bodies
+    assert system_of(text, "x.yaml").bodies != system_of(without, "x.yaml").bodies
 
 
 @pytest.mark.parametrize(

@@ -11,19 +11,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import system_of
 from scipy.integrate import solve_ivp
 
 from mbsym.numerics.closing import closed
 from mbsym.numerics.scenario import scenario
 from mbsym.simulation import Request, Simulation, simulate
-from mbsym.source import read
 
 G = 9.81
 
 
 def run(text: str, time: float) -> Simulation:
-    system, complaints = read("mbsym: 1\n" + text)
-    assert system is not None, list(complaints)
+    system = system_of("mbsym: 1\n" + text)
     found = simulate(
         closed(scenario(system)).scenario,
         Request(time=time, samples=2, method="dop853", tolerance=1e-12, estimate=False),

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import random
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import SHIPPED, analysed, text_of
 from flint import arb
 
 import mbsym
@@ -18,25 +18,16 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.stability.words import Because, Word
-from mbsym.source import read
 from tests.published.test_constrained_systems import AtState
-
-SYSTEMS = Path(__file__).parents[2] / "systems"
 
 
 @cache
 def shipped(name: str) -> Analysis:
-    return mbsym.load(SYSTEMS / f"{name}.yaml")
+    return mbsym.load(SHIPPED / f"{name}.yaml")
 
 
 def changed(name: str, *changes: tuple[str, str]) -> Analysis:
-    text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
-    return Analysis(system)
+    return analysed(text_of(name, *changes))
 
 
 def parameters(analysis: Analysis) -> dict[str, Polynomial]:

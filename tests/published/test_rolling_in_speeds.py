@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import SHIPPED, analysed, text_of
 from flint import arb
 
 import mbsym
@@ -26,27 +27,12 @@ from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis
 from mbsym.source import read
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 REFERENCES = Path(__file__).parents[1] / "references"
-
-
-def described(text: str) -> Analysis:
-    system, complaints = read(text)
-    assert system is not None, list(complaints)
-    return Analysis(system)
-
-
-def text_of(name: str, *changes: tuple[str, str]) -> str:
-    text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return text
 
 
 @cache
 def shipped(name: str) -> Analysis:
-    return mbsym.load(SYSTEMS / f"{name}.yaml")
+    return mbsym.load(SHIPPED / f"{name}.yaml")
 
 
 class AtState:
@@ -102,7 +88,7 @@ def test_the_disc_has_all_ten_published_rates(case: str) -> None:
 
 def test_problems_4_to_6_of_the_disc_are_those_in_coordinates() -> None:
     """3 r w^2 > g of the upright disc (Neimark & Fufaev), whatever the speeds are."""
-    found, plain = shipped("rolling-disc-speeds"), mbsym.load(SYSTEMS / "rolling-disc.yaml", (4, 5, 6))
+    found, plain = shipped("rolling-disc-speeds"), mbsym.load(SHIPPED / "rolling-disc.yaml", (4, 5, 6))
     conditions = [(str(x), relation) for part in found.stability.subsystems for _, x, relation in part.conditions]
     assert conditions == [("3*r*w**2 - g", ">")]
     assert [str(x) for x in found.linearisation.matrices] == [str(x) for x in plain.linearisation.matrices]
@@ -113,7 +99,7 @@ FRAME = "speeds: {p: lean_dot, q: spin_dot + yaw_dot*sin(lean), s: yaw_dot*cos(l
 
 def in_a_circle() -> Analysis:
     inertia = "    inertia: [m*r**2/4, m*r**2/2, m*r**2/4]\n"
-    return described(text_of("rolling-disc-in-a-circle", (inertia, f"{inertia}    {FRAME}\n")))
+    return analysed(text_of("rolling-disc-in-a-circle", (inertia, f"{inertia}    {FRAME}\n")))
 
 
 def test_first_approximation_of_the_disc_in_a_circle() -> None:
@@ -160,7 +146,7 @@ def test_the_disc_has_the_equations_of_neimark_and_fufaev() -> None:
 
     5/4 p' = 3/2 s q - 1/4 s^2 tan(lean) + g/r sin(lean),   3/2 q' = -s p,   1/4 s' = 1/4 s p tan(lean) - 1/2 p q.
     """
-    found = described(text_of("rolling-disc-speeds", ("speeds: {u1: omega1, u2: omega2, u3: omega3}", FRAME)))
+    found = analysed(text_of("rolling-disc-speeds", ("speeds: {u1: omega1, u2: omega2, u3: omega3}", FRAME)))
     source = random.Random(11)
     for _ in range(3):
         lean, p, q, s = (source.uniform(-1, 1) for _ in range(4))
@@ -206,7 +192,7 @@ SPEEDS = ("coordinates: [x, y, alpha, beta, gamma]", "speeds: {p: omega1, q: ome
 
 def turntable(rate: str = "Omega") -> Analysis:
     """The sphere on the turntable with its angular velocity for speeds, x and y those of a body of their own."""
-    return described(
+    return analysed(
         text_of(
             "turntable-sphere",
             ("  - name: sphere\n    attached to: 0\n    connection point: [x, y, r]\n",
@@ -270,7 +256,7 @@ def test_a_top_that_is_tied_to_a_point_has_eulers_equations(orientation: str) ->
     """(A + m l^2) p' + (C - A - m l^2) q r = m g l gamma_2,  (A + m l^2) q' - (C - A - m l^2) p r = -m g l gamma_1,
     C r' = 0: three coordinates tied, and their velocities expressed.
     """
-    found = described(TOP.replace("ORIENTATION", orientation))
+    found = analysed(TOP.replace("ORIENTATION", orientation))
     tied = found.constraints
     assert (tied.position_rank, tied.dependent, tied.free) == (3, ("x_dot", "y_dot", "z_dot"), ("p", "q", "r"))
     m, l, g, a, c = 1.5, 0.4, 9.81, 0.2, 0.1
@@ -339,7 +325,7 @@ def test_a_mistake_is_found(
     monkeypatch: pytest.MonkeyPatch, module: Any, function: str, mistake: Callable[..., Any], check: str
 ) -> None:
     monkeypatch.setattr(module, function, mistake(getattr(module, function)))
-    analysis = mbsym.load(SYSTEMS / "rolling-disc-speeds.yaml", (3, 7))
+    analysis = mbsym.load(SHIPPED / "rolling-disc-speeds.yaml", (3, 7))
     analysis.stage(3)
     found = analysis.check(check)
     assert found is not None
@@ -363,7 +349,7 @@ def test_there_is_no_first_approximation_where_speeds_turn_with_the_body() -> No
         _ = shipped("rolling-disc-speeds").first_order
     top = TOP.replace("ORIENTATION", "angles").replace("[3, 1, 3]", "[1, 2, 3]") + "motion: {z: l}\n"
     with pytest.raises(Unavailable, match="constraints tie positions: their deviations are not free"):
-        _ = described(top).first_order
+        _ = analysed(top).first_order
 
 
 def complaints_of(text: str) -> list[tuple[str, str]]:

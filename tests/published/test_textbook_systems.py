@@ -12,6 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from conftest import filed
 from terminal import told
 
 import mbsym
@@ -100,8 +101,7 @@ values: {m: 1, k: 3, l: 1}
 def analysed(tmp_path: Path, text: str, **numbers: str) -> Analysis:
     for name, number in numbers.items():
         text = text.replace(f" {name}", f" {number}")
-    path = tmp_path / "system.yaml"
-    path.write_text(text)
+    path = filed(tmp_path / "system.yaml", text)
     return mbsym.load(path)
 
 

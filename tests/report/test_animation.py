@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 import windows
-from click.testing import CliRunner
-from conftest import SHIPPED, TESTS
+from conftest import SHIPPED, TESTS, filed, invoked
 from PIL import Image
 
 import mbsym
@@ -35,7 +34,6 @@ from mbsym.report.viewer.motion import Motion, motion_of, moving_picture, run_se
 from mbsym.report.viewer.page import AFTER, KEYS, NAMED, NEEDED, WORDS, animation_page, modes_part, picture_part
 from mbsym.simulation import Simulation
 from mbsym.studies.simulate.files import motion_files
-from mbsym_cli.main import main
 from tests.report.readers import unreadable
 
 
@@ -170,8 +168,7 @@ def opened(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
     pages = []
 
     def one(text: str, **options: Any) -> Any:
-        file = tmp_path / "animation.html"
-        file.write_text(text, encoding="utf-8")
+        file = filed(tmp_path / "animation.html", text)
         shown = browser.new_page(**options)
         pages.append(shown)
         shown.on("console", lambda heard: said.append(heard.text))
@@ -314,8 +311,7 @@ def test_without_ffmpeg_a_video_is_refused_before_anything_is_integrated(
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     words = ["simulate", str(SHIPPED / "double-pendulum.yaml"), "--format", "mp4", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, words)
-    assert done.exit_code == 2
+    done = invoked(*words, code=2)
     assert "--format: error[no-ffmpeg]: ffmpeg makes mp4, and there is none on the path" in done.stderr
     assert not (tmp_path / "out").exists()
 

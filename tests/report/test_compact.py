@@ -7,8 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED, WITH_BODIES, compiled_latex, needs_pdflatex
+from conftest import SHIPPED, WITH_BODIES, compiled_latex, invoked, needs_pdflatex
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -19,7 +18,6 @@ from mbsym.report.latex import report as latex_report
 from mbsym.report.latex import writer as latex_writer
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.passages import passages
-from mbsym_cli.main import main
 
 #: The systems of which some problem is told, by problem; all others keep closed formulas.  The tether's equations are
 #: long in products of sines and cosines only: in sums of angles, as its paper prints them, they take less than a page.
@@ -152,12 +150,10 @@ def test_detail_is_an_option_of_run(tmp_path: Path) -> None:
     texts = {}
     for word in ("compact", "full"):
         arguments = ["run", str(SHIPPED / "satellite.yaml"), "--format", "latex", "--problems", "3", "--quiet"]
-        done = CliRunner().invoke(main, [*arguments, "--detail", word, "--out", str(tmp_path / word)])
-        assert done.exit_code == 0, done.output
+        done = invoked(*arguments, "--detail", word, "--out", tmp_path / word, code=0)
         texts[word] = (tmp_path / word / "report.tex").read_text(encoding="utf-8")
     assert "Angular acceleration of body 2" in texts["compact"]
     assert "Angular acceleration" not in texts["full"]
-    done = CliRunner().invoke(main, ["run", str(SHIPPED / "satellite.yaml"), "--detail", "ful", "--out", str(tmp_path)])
-    assert done.exit_code == 2
+    done = invoked("run", SHIPPED / "satellite.yaml", "--detail", "ful", "--out", tmp_path, code=2)
     assert "--detail: error[unknown-detail]" in done.output
     assert "did you mean 'full'?" in done.output

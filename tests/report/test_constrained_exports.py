@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ball, precision
+from conftest import SHIPPED, ball, precision
 from mutants import corrupted
 from scipy.integrate import solve_ivp
 from test_exports import differences, module, translated
@@ -35,7 +35,6 @@ from mbsym.report.exports.modelica import proposed
 from mbsym.report.targets import FORMATS
 from tests.report.readers import unreadable
 
-SHIPPED = Path(__file__).parents[2] / "systems"
 COMPILER = shutil.which("cc")
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
 

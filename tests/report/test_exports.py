@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, filed
 from mutants import corrupted
 from test_reports import NASTY
 from truth_at_states import Point, differences, random_point, truth
@@ -130,8 +130,7 @@ def text_of(name: str, kind: str) -> str:
 
 
 def module(text: str, folder: Path) -> Any:
-    path = folder / "exported.py"
-    path.write_text(text, encoding="utf-8")
+    path = filed(folder / "exported.py", text)
     spec = importlib.util.spec_from_file_location("exported", path)
     assert spec is not None
     assert spec.loader is not None
@@ -705,8 +704,7 @@ def test_model_py_names_what_it_lacks(tmp_path: Path) -> None:
 
 def test_types_of_model_py_hold_in_strict_mode(tmp_path: Path) -> None:
     pytest.importorskip("mypy")
-    path = tmp_path / "model.py"
-    path.write_text(text_of("satellite-with-damper-driven", "python"), encoding="utf-8")
+    path = filed(tmp_path / "model.py", text_of("satellite-with-damper-driven", "python"))
     command = [sys.executable, "-m", "mypy", "--strict", "--no-incremental", "--config-file", "", str(path)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -17,7 +17,6 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.report.figures import drawing
 from mbsym.report.figures.drawing import equalities, saved
 from mbsym.report.figures.figures import Curve, _page_of
-from mbsym_cli.main import main
 
 DESCRIPTION = """
 mbsym: 1
@@ -65,11 +64,9 @@ def drawn_by(command: str, description: str, tmp_path: Path, monkeypatch: pytest
             drawn.extend(text.get_text() for text in self.figure.findobj(Text))
 
     monkeypatch.setattr(drawing, "FigureCanvasAgg", Watched)
-    file = tmp_path / "pendulum.yaml"
-    file.write_text(description, encoding="utf-8")
+    file = filed(tmp_path / "pendulum.yaml", description)
     study, *options = command.split()
-    done = CliRunner().invoke(main, [study, str(file), *options, "--out", str(tmp_path / "out"), "--quiet"])
-    assert done.exit_code == 0, done.output
+    invoked(study, file, *options, "--out", tmp_path / "out", "--quiet", code=0)
     return drawn
 
 

@@ -8,11 +8,10 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 
 from mbsym.report.words.findings import Finding, findings_of, github_annotations, json_lines, sarif
 from mbsym.source import read
-from mbsym_cli.main import main
 
 HOSTILE = Finding("a b/%,:é.yaml", "bad-name", "100 %\r\n::error::not mine", "warning", 3, 5, 4, "write , or : \x1b[2J")
 WHOLE = Finding("none.yaml", "unreadable", "the file cannot be read")
@@ -70,9 +69,8 @@ def test_check_writes_it_and_nothing_else(tmp_path: Path, output_format: str) ->
     good, bad = tmp_path / "good.yaml", tmp_path / "bad.yaml"
     bad.write_text(UNDECLARED, encoding="utf-8")
     good.write_text(UNDECLARED.replace("mass: M", "mass: 1"), encoding="utf-8")
-    result = CliRunner().invoke(main, ["check", str(tmp_path), "--output-format", output_format])
-    assert result.exit_code == 2
+    result = invoked("check", tmp_path, "--output-format", output_format, code=2)
     assert "unknown name 'M'" in result.stdout
     assert "good.yaml" not in result.stdout
     assert result.stderr == ""
-    assert CliRunner().invoke(main, ["check", str(good), "--output-format", output_format]).exit_code == 0
+    assert invoked("check", good, "--output-format", output_format).exit_code == 0

@@ -9,8 +9,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED, compiled_latex, needs_pdflatex
+from conftest import SHIPPED, compiled_latex, invoked, needs_pdflatex
 from jsonschema import Draft202012Validator
 
 import mbsym
@@ -18,7 +17,6 @@ from mbsym.report.canonical import forms_of, with_names
 from mbsym.report.code.python_module import render as module_text
 from mbsym.report.schemas import schema
 from mbsym.report.targets import TARGETS
-from mbsym_cli.main import main
 
 #: Ignored coordinates; dissipation and inertia that couples; prescribed motion; speeds of their own.
 SYSTEMS = ("heavy-top", "satellite-with-damper", "satellite-with-damper-driven", "clebsch-poisson")
@@ -29,8 +27,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What a user gets of the heavy top."""
     folder = tmp_path_factory.mktemp("forms")
     command = ["run", str(SHIPPED / "heavy-top.yaml"), "--form", "hamilton,routh", "--out", str(folder), "-v"]
-    found = CliRunner().invoke(main, command)
-    assert found.exit_code == 0, found.output
+    found = invoked(*command, code=0)
     assert "L does not contain phi, on which no other force acts: the momenta beta = (p_phi)" in found.output
     assert "W = p_phi^2/(2 C) + m l g cos(alpha) cos(beta)" in found.output
     for check in ("Routh's equations", "canonical equations", "Poisson brackets"):
@@ -68,7 +65,7 @@ def test_the_report_compiles(reports: Path, tmp_path: Path) -> None:
 
 def test_what_has_no_form_says_why_in_every_file(tmp_path: Path) -> None:
     command = ["run", str(SHIPPED / "cart-pole.yaml"), "--form", "routh", "--out", str(tmp_path), "-p", "3"]
-    found = CliRunner().invoke(main, command)
+    found = invoked(*command)
     reason = "cyclic are p, but other forces act on them, or depend on them"
     assert found.exit_code == 0
     assert f"Routh's form  no result: {reason}" in found.output
@@ -80,8 +77,7 @@ def test_what_has_no_form_says_why_in_every_file(tmp_path: Path) -> None:
 
 def test_an_unknown_form_is_complained_about(tmp_path: Path) -> None:
     command = ["run", str(SHIPPED / "heavy-top.yaml"), "--form", "hamiltom", "--out", str(tmp_path / "none")]
-    found = CliRunner().invoke(main, command)
-    assert found.exit_code == 2
+    found = invoked(*command, code=2)
     assert "there is no form 'hamiltom'" in found.output
     assert "did you mean 'hamilton'?" in found.output
     assert not (tmp_path / "none").exists()

@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from conftest import SHIPPED, TESTS, browsed, derived, needs_chromium, precision, with_letters
+from conftest import SHIPPED, TESTS, browsed, derived, filed, needs_chromium, precision, with_letters
 from flint import arb, fmpq
 from mathml_reader import Reader, formulas, tokens_of, tree, written
 
@@ -306,8 +306,7 @@ def test_a_browser_shows_the_satellite(tmp_path: Path) -> None:
     """
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     page = page_of(analysis)
-    file = tmp_path / "report.html"
-    file.write_text(page, encoding="utf-8")
+    file = filed(tmp_path / "report.html", page)
     dom, said = browsed(file)
     assert said == []
     assert 'id="fold" type="button" data-fold=' in dom  # its script ran: the button is no longer hidden

@@ -6,13 +6,12 @@ import re
 from html import unescape
 
 import pytest
-from conftest import SHIPPED, derived
+from conftest import SHIPPED, analysed, derived
 
 from mbsym.analysis import Analysis
 from mbsym.report.html.formulas import inline
 from mbsym.report.html.report import PARTS, part_html, render, title
 from mbsym.report.targets import TARGETS
-from mbsym.source import read
 
 PENDULUM = """\
 mbsym: 1
@@ -30,9 +29,7 @@ motion: {x: 0}
 
 @pytest.fixture(scope="module")
 def pendulum() -> Analysis:
-    system, complaints = read(PENDULUM)
-    assert system is not None, complaints.items
-    return Analysis(system, (1, 2, 3, 4, 5, 6, 7))
+    return analysed(PENDULUM, (1, 2, 3, 4, 5, 6, 7))
 
 
 def attributes(html: str, name: str) -> list[str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import mbsym_templates
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from markupsafe import Markup
 
 import mbsym
@@ -25,7 +25,6 @@ from mbsym.report.latex.writer import escaped
 from mbsym.report.messages import messages
 from mbsym.report.targets import TARGETS
 from mbsym.report.whole_run import rendered
-from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 from tests.report.said import has_words
 from tests.report.test_latex_documents import CLASSES, PREAMBLE, complaints
@@ -96,19 +95,17 @@ def test_it_compiles(name: str, tmp_path: Path) -> None:
 
 
 def test_the_option_goes_before_the_description(tmp_path: Path) -> None:
-    path = tmp_path / "pendulum.yaml"
-    path.write_text((SHIPPED / "simple-pendulum.yaml").read_text() + "\nlanguage: es\n")
+    path = filed(tmp_path / "pendulum.yaml", (SHIPPED / "simple-pendulum.yaml").read_text() + "\nlanguage: es\n")
     for option, word in (
         ((), "Cinemática"),
         (("--language", "ru"), "Кинематика"),
         (("--language", "en"), "Kinematics"),
     ):
         words = ["run", str(path), "--format", "latex", "--problems", "1", "--out", str(tmp_path / "out"), *option]
-        assert CliRunner().invoke(main, words).exit_code == 0
+        assert invoked(*words).exit_code == 0
         assert word in (tmp_path / "out" / "report.tex").read_text()
         assert word in (tmp_path / "out" / "appendix.tex").read_text()
-    done = CliRunner().invoke(main, ["run", str(path), "--language", "de", "--out", str(tmp_path / "no")])
-    assert done.exit_code == 2
+    done = invoked("run", path, "--language", "de", "--out", tmp_path / "no", code=2)
     assert "en, ru" in done.output
 
 

@@ -8,12 +8,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.report.latex.report import abbreviated, render
 from tests.report.readers import read_latex
 
-SHIPPED = Path(__file__).parents[2] / "systems"
 LONG = " + ".join(f"x_{{{k}}} \\sin y_{{{k}}}" for k in range(20))
 
 

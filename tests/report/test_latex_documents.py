@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import invoked
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -23,7 +23,6 @@ from mbsym.report.latex.labels import labels, prefix_of, slug
 from mbsym.report.targets import TARGETS
 from mbsym.report.whole_run import rendered
 from mbsym.source.yaml_writer import meaning
-from mbsym_cli.main import main
 from tests.conftest import SHIPPED, TESTS, needs_pdflatex
 from tests.report.readers import unreadable
 
@@ -204,11 +203,11 @@ def test_figures_of_a_simulation_stand_in_the_report_of_the_same_description_onl
     derive = ["run", str(path), "--format", "latex", "--problems", "1-2", "--out", str(out)]
 
     def included() -> list[str]:
-        assert CliRunner().invoke(main, derive).exit_code == 0
+        assert invoked(*derive).exit_code == 0
         return re.findall(r"\\includegraphics\[[^]]*\]\{([^}]*)\}", (out / "report.tex").read_text())
 
     assert included() == []
-    assert CliRunner().invoke(main, simulate).exit_code == 0
+    assert invoked(*simulate).exit_code == 0
     made = sorted(file.name for file in out.glob("*.pdf"))
     assert made
     assert sorted(included()) == made

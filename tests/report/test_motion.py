@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, parsed, reference
+from conftest import SHIPPED, parsed, reference, system_of
 from scipy.spatial.transform import Rotation
 
 from mbsym.numerics.body_motion import body_motions
@@ -16,14 +16,12 @@ from mbsym.numerics.positions import AXIS, END, JOINT, MASS_CENTRE, ORIGIN, Posi
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.figures.motion_figure import motion_figures
 from mbsym.report.outlines import outlines
-from mbsym.source import load
 
 TRUTH = reference("tethered-satellites")["trajectories"]["table1"]["states"]
 
 
 def scenario_of(path: Path, **values: object) -> Scenario:
-    system, complaints, _ = load(path)
-    assert system is not None, [item.message for item in complaints.items]
+    system = system_of(path)
     return scenario(system, {name: parsed(str(value)) for name, value in values.items()})
 
 

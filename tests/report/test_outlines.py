@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from conftest import system_of
 from scipy.spatial.transform import Rotation as Turned
 
 import mbsym.report.outlines as module
@@ -14,7 +15,6 @@ from mbsym.numerics.body_motion import body_motions
 from mbsym.numerics.scenario import scenario
 from mbsym.report.outlines import Outline, outlines, shape_lines
 from mbsym.simulation import Request, Simulation, simulate
-from mbsym.source import read
 
 ARM = """
 mbsym: 1
@@ -48,8 +48,7 @@ initial: {q1: 0.8, q2: 0.9}
 
 @pytest.fixture(scope="module")
 def run() -> Simulation:
-    system, complaints = read(ARM, "arm.yaml")
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(ARM, "arm.yaml")
     return simulate(scenario(system), Request(1.0, samples=21, estimate=False))
 
 
@@ -97,8 +96,7 @@ def test_a_shape_at_a_wrong_place_is_caught(mistake: str, run: Simulation, monke
 
 
 def test_turns_of_shapes_are_those_of_scipy() -> None:
-    system, _ = read(ARM.replace("[3, 1], angles: [0.5, 0.2]", "[3, 1, 2], angles: [0.5, -1/3, pi/5]"), "arm.yaml")
-    assert system is not None
+    system = system_of(ARM.replace("[3, 1], angles: [0.5, 0.2]", "[3, 1, 2], angles: [0.5, -1/3, pi/5]"), "arm.yaml")
     rotation: Rotation = system.bodies[1].shapes[1].rotation
     wanted = Turned.from_euler("ZXY", [0.5, -1 / 3, np.pi / 5]).as_matrix()
     assert np.allclose(np.array(module.turned(rotation, {"pi": Fraction(0)})).T, wanted, atol=1e-14)

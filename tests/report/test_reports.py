@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, compiled_latex, needs_pdflatex, precision
+from conftest import SHIPPED, compiled_latex, filed, needs_pdflatex, precision
 from flint import arb, fmpq
 from terminal import told
 
@@ -84,8 +84,7 @@ def in_latex(value: Math) -> str:
 
 
 def loaded(text: str, folder: Path):
-    path = folder / "model.py"
-    path.write_text(text, encoding="utf-8")
+    path = filed(folder / "model.py", text)
     spec = importlib.util.spec_from_file_location("model_under_test", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -522,17 +521,6 @@ def test_reports_are_the_same_byte_for_byte():
 
 
 # --- Wolfram Language ---
-
-
-@pytest.fixture(scope="module")
-def mathics():
-    pytest.importorskip("mathics")
-    from mathics.core.load_builtin import import_and_load_builtins
-
-    import_and_load_builtins()
-    from mathics.session import MathicsSession
-
-    return MathicsSession(add_builtin=True, character_encoding="UTF-8")
 
 
 @pytest.mark.parametrize("name", ["nasty", "ziegler-damped.yaml"])

@@ -11,8 +11,7 @@ from types import SimpleNamespace
 from typing import Annotated, Any
 
 import pytest
-from click.testing import CliRunner
-from conftest import OWN, SHIPPED, derived
+from conftest import OWN, SHIPPED, derived, invoked
 from jsonschema import Draft202012Validator
 from msgspec import UNSET, Meta, UnsetType
 
@@ -27,7 +26,6 @@ from mbsym.report.documents.base import From, Part, told_apart_by, words, writte
 from mbsym.report.results_json import render
 from mbsym.report.runs.simulation_json import simulation_json
 from mbsym.report.schemas import names, schema, schema_of
-from mbsym_cli.main import main
 from mbsym_cli.schema import DESCRIPTION, SUMMARY
 
 SYSTEMS = sorted([*SHIPPED.glob("*.yaml"), *OWN.glob("*.yaml")])
@@ -155,8 +153,7 @@ def test_a_field_without_a_word_and_a_key_without_a_field_are_caught() -> None:
 
 @pytest.mark.parametrize("name", [DESCRIPTION, *names()])
 def test_the_command_prints_it(name: str) -> None:
-    done = CliRunner().invoke(main, ["schema", name])
-    assert done.exit_code == 0
+    done = invoked("schema", name, code=0)
     assert name == DESCRIPTION or json.loads(done.stdout) == schema(name)
     assert "$schema" in json.loads(done.stdout)
 
@@ -183,7 +180,7 @@ def test_the_other_files_follow_theirs() -> None:
         assert complaints("simulation", content) == []
         assert complaints("simulation", content | {"enrgy": 1})
     for name in ("double-pendulum", "cart-pendulum"):
-        done = CliRunner().invoke(main, ["equilibria", str(SHIPPED / f"{name}.yaml"), "--json"])
+        done = invoked("equilibria", SHIPPED / f"{name}.yaml", "--json")
         found = json.loads(done.stdout)
         assert complaints("equilibria", found) == []
         assert complaints("equilibria", found | {"complete": "yes"})

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 import terminal
-from click.testing import CliRunner
-from conftest import SHIPPED, derived
+from conftest import SHIPPED, derived, invoked
 
 import mbsym
 from mbsym.expressions.safe import UNBROKEN
@@ -30,7 +29,6 @@ from mbsym.report.content import (
 from mbsym.report.language import Language
 from mbsym.report.messages import messages
 from mbsym.report.plain_writer import STYLES, Writer
-from mbsym_cli.main import main
 
 #: Conservative and damped, prescribed, with constraints, speeds, unit vectors, inputs, matrices, claims, refusals.
 VARIED = (
@@ -102,9 +100,9 @@ def test_lines_are_as_wide_as_the_terminal_and_nothing_is_cut(
 ) -> None:
     """At 80 columns; joined again the lines are those of a pipe, which has a statement in each."""
     words = ["run", str(SHIPPED / f"{name}.yaml"), "-v", "--format", "json", "--out", str(tmp_path)]
-    whole = CliRunner().invoke(main, words).output
+    whole = invoked(*words).output
     monkeypatch.setenv("COLUMNS", "80")
-    folded = CliRunner().invoke(main, words).output
+    folded = invoked(*words).output
     assert not [line for line in folded.splitlines() if len(line) > 80 and str(tmp_path) not in line]
     assert UNBROKEN not in folded + whole
     joined = " ".join(folded.split())

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from matplotlib.figure import Figure
 
 import mbsym.report.exports.fmu as fmu_units_module
@@ -20,7 +20,6 @@ from mbsym.numerics.trade.tradeoff import Tradeoff
 from mbsym.report.runs.tradeoff_table import tradeoff_csv
 from mbsym.report.schemas import schema
 from mbsym.report.unit_text import latex, modelica, pretty
-from mbsym_cli.main import main
 
 ROOT = Path(__file__).parents[2]
 
@@ -70,9 +69,7 @@ BODY = {
 
 def described(tmp_path: Path, text: str = CART, spring: str = SPRING) -> Path:
     """A file with the description; every line about units is left out where ``text`` says so."""
-    path = tmp_path / "cart.yaml"
-    path.write_text(text.replace("SPRING\n", spring), encoding="utf-8")
-    return path
+    return filed(tmp_path / "cart.yaml", text.replace("SPRING\n", spring))
 
 
 def bare(text: str = CART) -> str:
@@ -81,8 +78,7 @@ def bare(text: str = CART) -> str:
 
 
 def invoke(*arguments: object) -> str:
-    done = CliRunner().invoke(main, [str(x) for x in arguments])
-    assert done.exit_code == 0, done.output
+    done = invoked(*arguments, code=0)
     return done.output
 
 
@@ -406,8 +402,9 @@ def test_dimensionless_results_have_no_physical_unit(tmp_path: Path) -> None:
     folder = ROOT / "tests" / "source" / "test_units.py"
     units = re.search(r'SATELLITE = """(.*?)"""', folder.read_text(encoding="utf-8"), re.DOTALL)
     assert units is not None
-    path = tmp_path / "satellite.yaml"
-    path.write_text((ROOT / "systems" / "satellite.yaml").read_text(encoding="utf-8") + units[1], encoding="utf-8")
+    path = filed(
+        tmp_path / "satellite.yaml", (ROOT / "systems" / "satellite.yaml").read_text(encoding="utf-8") + units[1]
+    )
     invoke("run", path, "--format", "latex", "--problems", "4,5,6", "--out", tmp_path / "out")
     text = (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
     assert r"[\mathrm{kg}\,\mathrm{m}^{2}]" in text

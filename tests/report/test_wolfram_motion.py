@@ -19,17 +19,6 @@ from mbsym.numerics.scenario import scenario
 from mbsym.report.targets import TARGETS
 
 
-@pytest.fixture(scope="module")
-def mathics() -> Any:
-    pytest.importorskip("mathics")
-    from mathics.core.load_builtin import import_and_load_builtins
-
-    import_and_load_builtins()
-    from mathics.session import MathicsSession
-
-    return MathicsSession(add_builtin=True, character_encoding="UTF-8")
-
-
 def numbers(mathics: Any, expression: str) -> Any:
     text = str(mathics.evaluate(f"N[{expression}]")).replace("*^", "e")
     return np.array(json.loads(text.replace("{", "[").replace("}", "]")), float)

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
-from conftest import OWN, SHIPPED, derived
+from conftest import OWN, SHIPPED, derived, invoked
 from terminal import told
 
 import mbsym
@@ -18,7 +17,6 @@ from mbsym.analysis import Analysis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.words import Word
 from mbsym.report.targets import TARGETS
-from mbsym_cli.main import main
 
 SYSTEMS = sorted([*SHIPPED.glob("*.yaml"), *OWN.glob("*.yaml")])
 
@@ -88,8 +86,8 @@ def test_another_word_in_one_output_is_caught(place: str, monkeypatch: pytest.Mo
 
 def test_tables_and_files_have_the_same_words(tmp_path: Path) -> None:
     file = SHIPPED / "cart-pendulum.yaml"
-    table = CliRunner().invoke(main, ["equilibria", str(file)]).output
-    listed = json.loads(CliRunner().invoke(main, ["equilibria", str(file), "--json"]).output)
+    table = invoked("equilibria", file).output
+    listed = json.loads(invoked("equilibria", file, "--json").output)
     words = {one["stability"]["verdict"] for one in listed["equilibria"]}
     assert words <= set(Word)
     assert len(words) > 1
@@ -107,8 +105,7 @@ def test_a_word_fits_into_a_line_and_is_no_other_one() -> None:
 def test_energy_is_one_thing_in_every_output(tmp_path: Path) -> None:
     """The satellite's orbit is prescribed: T - U changes, T2 - T0 - U does not, and no output mixes them up."""
     file = SHIPPED / "satellite.yaml"
-    done = CliRunner().invoke(main, ["simulate", str(file), "--time", "1", "--out", str(tmp_path), "--invariants"])
-    assert done.exit_code == 0, done.output
+    done = invoked("simulate", file, "--time", "1", "--out", tmp_path, "--invariants", code=0)
     text = re.sub(r"\s+", " ", done.output)
     assert " T2 - T0 - U: conserved (proved)" in text
     assert " T - U: not conserved" in text

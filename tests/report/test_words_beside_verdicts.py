@@ -13,8 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, STATEMENTS, filed, invoked
 from terminal import told
 
 import mbsym
@@ -25,10 +24,8 @@ from mbsym.report.plain_writer import Writer
 from mbsym.report.results import results
 from mbsym.report.sections import equilibrium, stability
 from mbsym.report.targets import TARGETS
-from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
-STATEMENTS = Path(__file__).parents[1] / "cases" / "statements"
 
 SLEIGH = """
 mbsym: 1
@@ -188,7 +185,7 @@ motion: {th: 0}
 )
 def test_what_moves_is_said_to_move(tmp_path: Path, text: str, command: str, told: str, untold: str) -> None:
     (tmp_path / "file.yaml").write_text(text, encoding="utf-8")
-    result = CliRunner().invoke(main, [command, str(tmp_path / "file.yaml")])
+    result = invoked(command, tmp_path / "file.yaml")
     assert told in result.output + result.stderr
     assert untold not in result.output + result.stderr
 
@@ -205,14 +202,15 @@ def test_no_name_of_a_stage_stands_before_a_reason(tmp_path: Path, command: list
     """ "judgeable: the first approximation ..." was told of a shaken pendulum."""
     name, *options = command
     out = [] if name == "nonlinear" else ["--out", str(tmp_path)]
-    done = CliRunner().invoke(main, [name, str(SYSTEMS / "shaken-pendulum.yaml"), *options, *out])
+    done = invoked(name, SYSTEMS / "shaken-pendulum.yaml", *options, *out)
     assert reason in " ".join(done.output.split())
 
 
 def test_a_pendulum_is_not_called_free_of_applied_forces(tmp_path: Path) -> None:
     """Gravity is an applied force: "of systems without applied forces ... this one has 1" was told of a pendulum."""
-    path = tmp_path / "pendulum.yaml"
-    path.write_text("""
+    path = filed(
+        tmp_path / "pendulum.yaml",
+        """
 mbsym: 1
 name: Pendulum
 parameters: {l: positive, g: positive}
@@ -220,8 +218,9 @@ bodies: [{name: bob, attached to: 0, rotation: {axes: [3], angles: [x]}, mass ce
 loads: [uniform gravity: {acceleration: g, direction: [0, -1, 0]}]
 motion: {x: 0}
 values: {l: 1, g: 9}
-""")
-    done = CliRunner().invoke(main, ["nonlinear", str(path), "--vary", "l=1:2"])
+""",
+    )
+    done = invoked("nonlinear", path, "--vary", "l=1:2")
     assert "no values listed: of systems whose energy is conserved" in " ".join(done.output.split())
 
 

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from conftest import filed
 
 pytest.importorskip("starlette")
 pytest.importorskip("httpx")
@@ -24,9 +25,7 @@ OTHER = PENDULUM.replace("values: {m: 1", "values: {m: 2")
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    found = tmp_path / "pendulum.yaml"
-    found.write_text(PENDULUM)
-    return found
+    return filed(tmp_path / "pendulum.yaml", PENDULUM)
 
 
 def strays(folder: Path) -> list[str]:
@@ -230,8 +229,7 @@ def test_a_file_that_became_a_folder_is_left_alone(path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="links as POSIX has them")
 def test_a_journal_that_is_a_link_leads_to_no_other_file(path: Path, tmp_path: Path) -> None:
     """Somebody laid a link where the journal will stand: what it leads to is neither read nor written."""
-    precious = tmp_path / "precious"
-    precious.write_text(json.dumps({"text": "secret", "written": "now"}))
+    precious = filed(tmp_path / "precious", json.dumps({"text": "secret", "written": "now"}))
     journal = path.with_name(f".{path.name}.mbsym-journal")
     journal.symlink_to(precious)
     with edited(path) as client:

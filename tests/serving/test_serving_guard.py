@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from conftest import filed
 
 pytest.importorskip("starlette")
 pytest.importorskip("httpx")
@@ -19,8 +20,7 @@ from mbsym.serving.guard import Guard
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    path = tmp_path_factory.mktemp("guard") / "pendulum.yaml"
-    path.write_text(PENDULUM)
+    path = filed(tmp_path_factory.mktemp("guard") / "pendulum.yaml", PENDULUM)
     with edited(path) as found:
         yield found
 

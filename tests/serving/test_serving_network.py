@@ -13,26 +13,24 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
+from conftest import filed, invoked
 
 pytest.importorskip("starlette")
 pytest.importorskip("uvicorn")
 pytest.importorskip("httpx")
 
 import httpx
-from click.testing import CliRunner
 from serving_editor import PENDULUM
 
 from mbsym.serving.application import Services
 from mbsym.serving.jobs import Jobs
 from mbsym.serving.server import serving
 from mbsym_cli.files import deliver
-from mbsym_cli.main import main
 
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    path = tmp_path_factory.mktemp("network") / "pendulum.yaml"
-    path.write_text(PENDULUM)
+    path = filed(tmp_path_factory.mktemp("network") / "pendulum.yaml", PENDULUM)
     with serving(path, Services(path.parent / "reports" / "pendulum", deliver)) as found:
         yield found
 
@@ -79,8 +77,7 @@ def test_the_file_is_derived_before_the_page_asks(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(
         Jobs, "_attended", lambda self, job, task: (asked.append(task["kind"]), own(self, job, task))[1]
     )
-    path = tmp_path / "pendulum.yaml"
-    path.write_text(PENDULUM, encoding="utf-8")
+    path = filed(tmp_path / "pendulum.yaml", PENDULUM)
     with serving(path, Services(tmp_path / "reports", deliver)) as address:
         while asked != ["derive"]:
             time.sleep(0.01)
@@ -151,8 +148,7 @@ def test_without_the_extra_it_is_told_what_to_install(name: str, monkeypatch: py
     for module in [x for x in sys.modules if x.partition(".")[0] == name or x.startswith("mbsym.serving")]:
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, name, None)
-    done = CliRunner().invoke(main, ["edit", "x.yaml"])
-    assert done.exit_code == 2
+    done = invoked("edit", "x.yaml", code=2)
     assert "pip install 'mbsym[edit]'" in done.output
 
 
@@ -162,16 +158,14 @@ def test_without_the_extra_it_is_told_what_to_install(name: str, monkeypatch: py
 )
 def test_what_cannot_be_edited_is_refused(arguments: list[str], word: str, monkeypatch: Any, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(main, ["edit", *arguments])
-    assert done.exit_code == 2
+    done = invoked("edit", *arguments, code=2)
     assert word in done.output
     assert not list(tmp_path.iterdir())
 
 
 def test_a_port_that_is_taken_is_told(address: str, monkeypatch: Any, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(main, ["edit", "x.yaml", "--no-browser", "--port", str(urlsplit(address).port)])
-    assert done.exit_code == 2
+    done = invoked("edit", "x.yaml", "--no-browser", "--port", urlsplit(address).port, code=2)
     assert "in use" in done.output
 
 

@@ -6,13 +6,12 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 from mbsym.expressions.message import Message
 from mbsym.report.language import Language
 from mbsym.source import read
 from mbsym.source.text_lines import language_of
-from mbsym_cli.main import main
 
 WRONG = """mbsym: 1
 name: Wrong
@@ -41,26 +40,20 @@ CORPUS = sorted((Path(__file__).parents[1] / "invalid").iterdir())
 
 
 def described(language: str, folder: Path) -> Path:
-    file = folder / "wrong.yaml"
-    file.write_text(WRONG.format(language=f"language: {language}\n" if language else ""), encoding="utf-8")
-    return file
+    return filed(folder / "wrong.yaml", WRONG.format(language=f"language: {language}\n" if language else ""))
 
 
 @pytest.mark.parametrize("language", SAID)
 def test_complaints_are_said_in_the_language_of_the_description(language: str, tmp_path: Path) -> None:
     """What finds them, code and place, is the same in each; English where the description says nothing."""
-    done = CliRunner().invoke(main, ["check", str(described(language, tmp_path))])
-    assert done.exit_code == 2
+    done = invoked("check", described(language, tmp_path), code=2)
     for part in SAID[language]:
         assert part in done.stderr
     assert "wrong.yaml:" in done.stderr
 
 
 def test_programs_read_english(tmp_path: Path) -> None:
-    written = [
-        CliRunner().invoke(main, ["check", "--output-format", "json", str(described(language, tmp_path))]).stdout
-        for language in SAID
-    ]
+    written = [invoked("check", "--output-format", "json", described(language, tmp_path)).stdout for language in SAID]
     told = [[(one["code"], one["message"], one["hint"]) for one in map(json.loads, x.splitlines())] for x in written]
     assert told[0] == told[1] == told[2]
     assert ("unknown-key", "unknown key 'colour' in body 2") in {(code, text) for code, text, _ in told[0]}
@@ -112,10 +105,8 @@ def test_complaints_about_options_are_said_in_it_too(words: str, tmp_path: Path)
     text += "loads: [{spring: {coordinate: x, stiffness: k}}]\nmotion: {x: 0}\n"
     command, *options = words.split(" ")
     for language, said in zip(("ru", "es"), OPTIONS[words], strict=True):
-        file = tmp_path / f"{language}.yaml"
-        file.write_text(f"{text}language: {language}\n", encoding="utf-8")
-        done = CliRunner().invoke(main, [command, str(file), *options], env={"COLUMNS": "200"})
-        assert done.exit_code == 2
+        file = filed(tmp_path / f"{language}.yaml", f"{text}language: {language}\n")
+        done = invoked(command, file, *options, env={"COLUMNS": "200"}, code=2)
         assert said in done.stderr
         assert {"ru": "ничего не записано.", "es": "no se escribió nada."}[language] in done.stderr
         assert not [x for x in (" is ", "nothing was", "no value", "hint", "there") if x in done.stderr], done.stderr

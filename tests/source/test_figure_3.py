@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from conftest import system_of
 
 from mbsym.expressions.tree import text
 from mbsym.source.document import load, read
@@ -104,8 +105,7 @@ def test_it_is_read_as_people_fill_it_in() -> None:
     latin = BY_HAND.replace("χ", "chi").replace("ω₀", "omega0").replace("ψ", "psi")
     for words in ("0 l/2 0", "0 -l 0", "3 0 0"):
         latin = latin.replace(words, ", ".join(words.split()))
-    plain, _ = read(latin, "form.txt")
-    assert plain is not None
+    plain = system_of(latin, "form.txt")
     assert str(replace(found.bodies[0], span=None)) == str(replace(plain.bodies[0], span=None))
     assert found.coordinates == ("psi",)
     assert found.parameter_names == plain.parameter_names
@@ -148,8 +148,7 @@ Rotation angles
 Radius vector of connection point x y 0
 Generalized coordinates x y
 """
-    moving, _ = read(form, "form.txt")
-    assert moving is not None
+    moving = system_of(form, "form.txt")
     assert moving.coordinates == ("x", "y")
     assert [text(x) for x in moving.bodies[0].mass_centre] == ["0", "0", "0"]
     assert not moving.bodies[0].rotation.angles
@@ -177,8 +176,7 @@ def test_it_is_read_as_printed_signs_have_it() -> None:
         .replace("(0 -l 0)", "(0 \u2212l 0)")
         .replace("M2", "M\u2082")
     )
-    system, _ = read(printed, "form.txt")
-    assert system is not None
+    system = system_of(printed, "form.txt")
     (body,) = system.bodies
     assert [text(x) for x in body.connection_point] == ["0", "3*l**2/l1", "0"]
     assert [text(x) for x in body.mass_centre] == ["0", "-l", "0"]

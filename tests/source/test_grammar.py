@@ -10,6 +10,7 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
+from conftest import system_of
 
 from mbsym.editing import explanation, suggestions
 from mbsym.editing.document.changing import changes
@@ -184,8 +185,7 @@ def cubic_spring(monkeypatch: pytest.MonkeyPatch) -> Kind:
 
 def test_a_new_kind_of_load_is_a_row(cubic_spring: Kind) -> None:
     """Read, written in both spellings, explained, completed, in the schema and in renaming, by its row alone."""
-    system, complaints = read(NEW, "new.yaml")
-    assert system is not None, list(complaints)
+    system = system_of(NEW, "new.yaml")
     assert system.loads == (Cubic("x", Name("k"), Name("x0")),)
     for spelled, name in ((to_yaml(system), "a.yaml"), (to_text(system), "a.txt")):
         again, _ = read(spelled, name)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import filed, system_of
 
 import mbsym
 from mbsym.expressions.tree import Number
@@ -26,9 +27,7 @@ def described(matrices: str) -> str:
 def in_folder(folder: Path, matrices: str, **files: str | bytes) -> Path:
     for name, content in files.items():
         (folder / name.replace("_", ".")).write_bytes(content.encode() if isinstance(content, str) else content)
-    path = folder / "pair.yaml"
-    path.write_text(described(matrices))
-    return path
+    return filed(folder / "pair.yaml", described(matrices))
 
 
 def saved(array: object) -> bytes:
@@ -38,8 +37,7 @@ def saved(array: object) -> bytes:
 
 
 def numbers(path: Path, key: str) -> list[list[F]]:
-    system, complaints, _ = load(path)
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(path)
     assert system.linear is not None
     found = system.linear.matrix(key)
     assert found is not None
@@ -57,8 +55,7 @@ def complaint(path: Path) -> tuple[str, str | None]:
 
 def test_both_spellings_come_back() -> None:
     text = described("M: [[2, 0], [0, 1]]\nC: [[c, w], [0, 0]]\nK: [[k, -1/2], [-1/2, 3*k]]\nB: [[1], [k]]")
-    system, complaints = read(text.replace("linear system", "inputs: [u]\nlinear system"))
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(text.replace("linear system", "inputs: [u]\nlinear system"))
     assert read(to_yaml(system))[0] == system
     assert read(to_text(system))[0] == system
 
@@ -66,8 +63,7 @@ def test_both_spellings_come_back() -> None:
 def test_a_matrix_market_file_holds_exact_decimals(tmp_path: Path) -> None:
     path = in_folder(tmp_path, "K: {file: K.mtx}", K_mtx=MARKET)
     assert numbers(path, "K") == [[F(5, 2), F(-1, 10)], [F(-1, 10), F(4)]]
-    system = load(path)[0]
-    assert system is not None
+    system = system_of(path)
     again, _ = read(to_yaml(system), "again.yaml", tmp_path)  # by its name and digest
     assert again == system
     assert read(to_text(system), "again.txt", tmp_path)[0] == system

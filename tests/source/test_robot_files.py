@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked, system_of
 
 import mbsym
 from mbsym.expressions.place import Complaints
@@ -20,7 +20,6 @@ from mbsym.source import read, to_text
 from mbsym.source.robots import Converted, convert, is_robot
 from mbsym.source.robots.reader import MAX_DEPTH
 from mbsym.source.robots.robot import turns_about
-from mbsym_cli.main import main
 
 PENDULUM = """<?xml version="1.0"?>
 <robot name="pen: # dulum">
@@ -147,8 +146,7 @@ def orientation_of(attributes: str, compiler: str = "") -> np.ndarray:
     inertial = '<inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>'
     body = f'<body name="b" {attributes}><joint name="j" type="slide"/>{inertial}</body>'
     text = f"<mujoco><compiler {compiler}/><worldbody>{body}</worldbody></mujoco>"
-    system, _ = read(converted(text).yaml, "x.yaml")
-    assert system is not None
+    system = system_of(converted(text).yaml, "x.yaml")
     turns = [(axis, written(angle)) for body in system.bodies for axis, angle in body.rotation.turns()]
     return product(turns)
 
@@ -207,8 +205,7 @@ def test_a_planar_joint_slides_across_its_axis_and_turns_about_it(axis: str, pla
     assert f"connection point: {place}" in made.yaml
     assert f"axes: {axes}" in made.yaml
     assert made.left_out == ("contact (<collision>)", "damping of a planar joint", "dry friction of a joint")
-    system, _ = read(made.yaml, "p.yaml")
-    assert system is not None
+    system = system_of(made.yaml, "p.yaml")
     assert system.coordinates == ("q1x", "q1y", "q1yaw")
 
 
@@ -218,8 +215,7 @@ def test_a_floating_joint_moves_from_where_it_is_placed_and_quaternions_turn_ori
     assert "connection point: [0, 0, 2]" in converted(free).yaml
     assert "angles: [0.3]" in converted(free).yaml
     turned = PENDULUM.replace('rpy="0 0 0.3"', 'quat_xyzw="1 1 1 1"')
-    system, _ = read(converted(turned).yaml, "p.yaml")
-    assert system is not None
+    system = system_of(converted(turned).yaml, "p.yaml")
     turns = [(axis, written(angle)) for body in system.bodies for axis, angle in body.rotation.turns()]
     assert np.allclose(product([turn for turn in turns if turn[1] != "q1"]), np.eye(3)[:, [1, 2, 0]].T.T)
     assert "conflicting-keys" in [code for code, _ in complaints_of(PENDULUM.replace("rpy", 'quat_xyzw="1 0 0 0" rpy'))]
@@ -228,15 +224,12 @@ def test_a_floating_joint_moves_from_where_it_is_placed_and_quaternions_turn_ori
 def test_the_command_tells_what_it_leaves_out_and_writes_what_runs(tmp_path: Path) -> None:
     file, out = tmp_path / "p.urdf", tmp_path / "p.yaml"
     file.write_text(PENDULUM, encoding="utf-8")
-    done = CliRunner().invoke(main, ["convert", str(file), "--out", str(out)])
-    assert done.exit_code == 0, done.output
+    done = invoked("convert", file, "--out", out, code=0)
     assert "left out: contact" in done.stderr
-    assert CliRunner().invoke(main, ["check", str(out)]).exit_code == 0
-    done = CliRunner().invoke(main, ["convert", str(out), "--symbols"])
-    assert done.exit_code == 2
+    assert invoked("check", out).exit_code == 0
+    done = invoked("convert", out, "--symbols", code=2)
     file.write_text(PENDULUM.replace('value="2"', 'value="two"'), encoding="utf-8")
-    done = CliRunner().invoke(main, ["convert", str(file), "--out", str(tmp_path / "no.yaml")])
-    assert done.exit_code == 2
+    done = invoked("convert", file, "--out", tmp_path / "no.yaml", code=2)
     assert f"{file}:5:" in done.stderr
     assert not (tmp_path / "no.yaml").exists()
 
@@ -260,8 +253,7 @@ def mujoco(before: str, body: str = BALL, after: str = "") -> str:
 
 
 def masses(text: str, **options: bool) -> list[str]:
-    system, complaints = read(converted(text, **options).yaml, "x.yaml")
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(converted(text, **options).yaml, "x.yaml")
     return [written(body.mass) for body in system.bodies]
 
 
@@ -293,13 +285,11 @@ def test_one_way_to_turn_stands_for_the_default_s() -> None:
 
 def test_only_the_first_link_is_freed_and_once() -> None:
     two = '<body name="a"><joint/><geom size="1"/></body><body name="b"><joint/><geom size="1"/></body>'
-    system, complaints = read(converted(mujoco("", two), floating=True).yaml, "x.yaml")
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(converted(mujoco("", two), floating=True).yaml, "x.yaml")
     assert system.coordinates == ("x", "y", "z", "yaw", "pitch", "roll", "q1", "q2")
-    free, _ = read(
+    free = system_of(
         converted(mujoco("", '<body name="a"><freejoint/><geom size="1"/></body>'), floating=True).yaml, "x.yaml"
     )
-    assert free is not None
     assert len(free.coordinates) == 6
 
 
@@ -517,8 +507,7 @@ TILTED = """<robot name="tilted"><link name="base"/>
 
 
 def angles_of(yaml: str, name: str) -> list[str]:
-    system, complaints = read(yaml, "p.yaml")
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(yaml, "p.yaml")
     (body,) = [body for body in system.bodies if body.name == name]
     return [written(angle) for angle in body.rotation.angles]
 
@@ -532,15 +521,13 @@ def test_an_angle_that_is_read_as_a_part_of_pi_is_told_and_left_where_that_is_as
     exact = converted(TILTED, exact_angles=True)
     assert exact.snapped == ()
     assert angles_of(exact.yaml, "a frame 1") + angles_of(exact.yaml, "a") == ["-0.785398", "0.2", "1.5708", "q1"]
-    file = tmp_path / "t.urdf"
-    file.write_text(TILTED, encoding="utf-8")
-    assert "1.5708 as pi/2" in CliRunner().invoke(main, ["convert", str(file)]).stderr
-    done = CliRunner().invoke(main, ["convert", str(file), "--angles", "exact"])
-    assert done.exit_code == 0
+    file = filed(tmp_path / "t.urdf", TILTED)
+    assert "1.5708 as pi/2" in invoked("convert", file).stderr
+    done = invoked("convert", file, "--angles", "exact", code=0)
     assert "1.5708" in done.stdout
     assert "as pi/2" not in done.stderr
     (tmp_path / "t.yaml").write_text(exact.yaml, encoding="utf-8")
-    assert CliRunner().invoke(main, ["convert", str(tmp_path / "t.yaml"), "--angles", "exact"]).exit_code == 2
+    assert invoked("convert", tmp_path / "t.yaml", "--angles", "exact").exit_code == 2
 
 
 def test_angles_of_mjcf_in_radians_are_told_and_those_in_degrees_are_exact() -> None:
@@ -617,8 +604,7 @@ def test_named_sites_and_bodies_without_mass_are_frames_and_other_sites_are_list
         "  - {claim: position, of: home, component: 3, equals: 1}\n"
     )
     assert [one.outcome for one in mbsym.loads(text).claims] == [Outcome.EXACT] * 3
-    freed, _ = read(converted(SITES, floating=True).yaml, "p.yaml")
-    assert freed is not None
+    freed = system_of(converted(SITES, floating=True).yaml, "p.yaml")
     assert [body.name for body in freed.bodies if "x" in body.coordinates] == ["b frame 1"]
     assert (
         complaints_of('<mujoco><worldbody><site name="home" pos="0 0 1"/></worldbody></mujoco>')[0][0] == "missing-key"
@@ -631,9 +617,8 @@ def test_angles_that_are_read_as_parts_of_pi_are_told_in_one_line(tmp_path: Path
     parts = ("pi/2", "pi/4", "-pi/2", "pi/6", "pi/3")
     body = '<body name="b{0}"><joint name="q{0}" axis="0 0 1"/><geom size="1" mass="1" euler="{1} 0 0"/>'
     inside = "".join(body.format(k, angle) for k, angle in enumerate(angles)) + "</body>" * len(angles)
-    file = tmp_path / "r.xml"
-    file.write_text(f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody></mujoco>', encoding="utf-8")
-    done = CliRunner().invoke(main, ["convert", str(file), "--out", str(tmp_path / "r.yaml")])
+    file = filed(tmp_path / "r.xml", f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody></mujoco>')
+    done = invoked("convert", file, "--out", tmp_path / "r.yaml")
     told = [line for line in done.stderr.split("\n") if "of pi" in line]
     assert len(told) == 1
     three = "1.5708 as pi/2, 0.7854 as pi/4, -1.5708 as -pi/2, ..."
@@ -665,8 +650,7 @@ def test_every_joint_that_something_can_drive_has_its_torque_as_an_input() -> No
     Its axes are turned about the vertical, which gravity does not feel.
     """
     made = converted(PENDULUM.replace('upper="2.5"', 'upper="2.5" effort="40"').replace("pivot&#10;x: y", "x-dot"))
-    system, _ = read(made.yaml, "p.yaml")
-    assert system is not None
+    system = system_of(made.yaml, "p.yaml")
     (one,) = system.inputs
     assert (one.name, one.meaning) == ("tau_x_dot_joint", "torque in joint x-dot, at most 40 N*m")
     claim = "{{claim: equation of motion, of: q1, equals: 0.6*q1_ddot + 0.7*q1_dot + 9.81*sin(q1) {} tau_x_dot_joint}}"
@@ -678,8 +662,7 @@ def test_an_actuator_of_mjcf_drives_its_joint_and_others_stay_passive() -> None:
     body = '<body name="a"><joint name="j"/><joint name="k" axis="1 0 0"/><geom size="1"/></body>'
     actuators = '<actuator><position joint="k"/><motor joint="k" gear="9"/><motor site="s"/></actuator>'
     made = converted(mujoco("", body, actuators))
-    system, _ = read(made.yaml, "p.yaml")
-    assert system is not None
+    system = system_of(made.yaml, "p.yaml")
     assert system.input_names == ("tau_k",)
     assert {"law of an actuator (position)", "actuator of no joint (motor)"} <= set(made.left_out)
     gear = "gear of an actuator (the input is the torque or force in the joint)"
@@ -745,8 +728,7 @@ GRIPPER = """<robot name="gripper"><link name="world"/><link name="palm"/>
 def test_joints_that_mimic_others_follow_them() -> None:
     """q_2 = 1/4 - q/2 and q_3 = 4 q_2 = 1 - 2 q: 2 T = (1 + 2/4 + 3 (0.5*2)^2) q'^2 = 4.5 q'^2, R = 5 (q'/2)^2/2."""
     made = converted(GRIPPER)
-    system, complaints = read(made.yaml, "p.yaml")
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(made.yaml, "p.yaml")
     assert (system.coordinates, made.joints, system.input_names) == (("q1",), ("j1",), ("tau_j1",))
     assert (
         outcomes(
@@ -781,11 +763,9 @@ def test_what_mimics_nothing_or_itself_is_complained_about(leader: str, code: st
 
 
 def test_the_link_world_is_the_ground() -> None:
-    system, _ = read(converted(GRIPPER).yaml, "p.yaml")
-    assert system is not None
+    system = system_of(converted(GRIPPER).yaml, "p.yaml")
     assert [(body.name, body.attached_to) for body in system.bodies][:1] == [("palm", "0")]
-    floating, _ = read(converted(GRIPPER, floating=True).yaml, "p.yaml")
-    assert floating is not None
+    floating = system_of(converted(GRIPPER, floating=True).yaml, "p.yaml")
     assert "world" in [body.name for body in floating.bodies]
 
 
@@ -820,8 +800,7 @@ def test_the_total_mass_may_be_set() -> None:
         '<body name="b"><joint/><inertial mass="3" pos="0 0 0"/></body>'
     )
     text = mujoco('<compiler settotalmass="8"/>', two)
-    system, _ = read(converted(text).yaml, "x.yaml")
-    assert system is not None
+    system = system_of(converted(text).yaml, "x.yaml")
     assert [eval(written(body.mass)) for body in system.bodies] == [2, 6]
     assert system.bodies[0].inertia is not None
     assert eval(written(system.bodies[0].inertia.tensor[0][0])) == pytest.approx(0.4)
@@ -837,8 +816,7 @@ def test_a_tensor_that_no_body_has() -> None:
     assert [code for code, _ in complaints_of(mujoco("", full))] == ["impossible-inertia"]
     balanced = converted(mujoco('<compiler balanceinertia="true"/>', body))
     assert not balanced.left_out
-    system, _ = read(balanced.yaml, "x.yaml")
-    assert system is not None
+    system = system_of(balanced.yaml, "x.yaml")
     assert system.bodies[0].inertia is not None
     assert [eval(written(system.bodies[0].inertia.tensor[k][k])) for k in range(3)] == pytest.approx([5 / 3] * 3)
 
@@ -879,8 +857,7 @@ def test_joints_and_points_that_are_tied_are_constraints() -> None:
         '<connect body1="a" anchor="0 0 -1" active="false"/><tendon tendon1="t"/></equality>'
     )
     made = converted(mujoco("", bodies, after))
-    system, complaints = read(made.yaml, "p.yaml")
-    assert system is not None, [one.message for one in complaints]
+    system = system_of(made.yaml, "p.yaml")
     relation, coincide = system.constraints
     assert isinstance(relation, Relation)
     assert isinstance(coincide, Coincide)
@@ -898,19 +875,15 @@ def test_files_beside_are_included_and_no_others(tmp_path: Path) -> None:
     file = tmp_path / "r.xml"
     text = '<mujoco>\n<worldbody><include file="{}"/></worldbody></mujoco>'
     file.write_text(text.format("parts/b.xml"), encoding="utf-8")
-    done = CliRunner().invoke(main, ["convert", str(file)])
-    assert done.exit_code == 0, done.output
+    done = invoked("convert", file, code=0)
     assert "pi*1" in done.stdout
     (tmp_path / "parts" / "b.xml").write_text(inside.replace("density", "densty"), encoding="utf-8")
-    done = CliRunner().invoke(main, ["convert", str(file)])
-    assert done.exit_code == 2
+    done = invoked("convert", file, code=2)
     assert "r.xml:2:" in done.stderr
-    secret = tmp_path.parent / f"{tmp_path.name}.xml"
-    secret.write_text(inside, encoding="utf-8")
+    secret = filed(tmp_path.parent / f"{tmp_path.name}.xml", inside)
     for name in (f"../{secret.name}", str(secret), "missing.xml"):
         file.write_text(text.format(name), encoding="utf-8")
-        done = CliRunner().invoke(main, ["convert", str(file)])
-        assert done.exit_code == 2
+        done = invoked("convert", file, code=2)
         assert "<include> is not read" in done.stderr
 
 
@@ -931,8 +904,7 @@ def test_coordinates_may_be_called_as_the_joints() -> None:
     assert system is not None
     assert system.coordinates == ("q1", "hip_1", "q3", "q4", "q5")
     assert {"b1", "b2", "b5"} <= {*system.parameter_names}  # dampers are numbered as before
-    plain, _ = read(converted(robot, symbols=True).yaml, "r.yaml")
-    assert plain is not None
+    plain = system_of(converted(robot, symbols=True).yaml, "r.yaml")
     assert plain.coordinates == ("q1", "q2", "q3", "q4", "q5")
 
 

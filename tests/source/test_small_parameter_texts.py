@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from conftest import system_of
 
 from mbsym.source import read
 
@@ -23,8 +24,7 @@ def test_powers_of_nothing_are_complained_of(said: str) -> None:
 def test_editor_text_that_loses_its_powers_is_complained_of() -> None:
     from mbsym.source.text_writer import to_text
 
-    whole, _ = read(EVERYTHING, "x.yaml")
-    assert whole is not None
+    whole = system_of(EVERYTHING, "x.yaml")
     text = to_text(whole)
     assert "powers =" in text
     broken = "\n".join(

@@ -14,6 +14,7 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
+from conftest import system_of
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from properties import settings
@@ -34,9 +35,7 @@ GOOD = [*SYSTEMS, EVERYTHING]
 
 
 def good(text: str, filename: str = "x.yaml") -> System:
-    system, complaints = read(text, filename)
-    assert system is not None, [render(item, text, filename) for item in complaints]
-    return system
+    return system_of(text, filename)
 
 
 def loaded(path: Path) -> System:

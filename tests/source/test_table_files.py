@@ -6,6 +6,7 @@ from fractions import Fraction as F
 from pathlib import Path
 
 import pytest
+from conftest import filed, system_of
 
 from mbsym.source import load, read, to_text, to_yaml
 from mbsym.source.tables import MOST_BYTES
@@ -27,9 +28,7 @@ ROWS = "# at the mast\ntime; speed; gust\n0; 3.2; 1\n\n0.5; 4; 1\n1.25; -1e-1; 2
 def described(folder: Path, fields: str, rows: str | bytes = ROWS) -> Path:
     (folder / "data").mkdir(exist_ok=True)
     (folder / "data/wind.csv").write_bytes(rows if isinstance(rows, bytes) else rows.encode())
-    path = folder / "mast.yaml"
-    path.write_text(DESCRIPTION.replace("FIELDS", fields))
-    return path
+    return filed(folder / "mast.yaml", DESCRIPTION.replace("FIELDS", fields))
 
 
 def complaints(folder: Path, fields: str, rows: str | bytes = ROWS) -> list[tuple[str, str | None]]:
@@ -43,15 +42,13 @@ def complaints(folder: Path, fields: str, rows: str | bytes = ROWS) -> list[tupl
     ("[time, speed]", ("3.2", "4", "-0.1")), ("[1, 2]", ("3.2", "4", "-0.1")), ("[time, 3]", ("1", "1", "2")),
 ])  # fmt: skip
 def test_columns_by_name_and_number(tmp_path: Path, columns: str, values: tuple[str, ...]) -> None:
-    system, _, _ = load(described(tmp_path, f"file: data/wind.csv, columns: {columns}"))
-    assert system is not None
+    system = system_of(described(tmp_path, f"file: data/wind.csv, columns: {columns}"))
     assert system.tables[0].points == tuple(zip((F(0), F(1, 2), F(5, 4)), map(F, values), strict=True))
 
 
 @pytest.mark.parametrize("rows", ["0,1\n2,3\n", "0\t1\n2\t3\n", "\ufeff t , x \r\n0, 1\r\n2, 3\r\n", '"0";"1"\n2;3'])
 def test_separators_marks_and_line_ends(tmp_path: Path, rows: str) -> None:
-    system, _, _ = load(described(tmp_path, "file: data/wind.csv", rows))
-    assert system is not None
+    system = system_of(described(tmp_path, "file: data/wind.csv", rows))
     assert system.tables[0].points == ((0, 1), (2, 3))
 
 
@@ -117,16 +114,14 @@ def test_a_text_alone_has_no_files_beside_it() -> None:
 def test_the_content_is_part_of_what_is_meant(tmp_path: Path) -> None:
     """Another content is another system: results are not taken for its own, and a stated digest is checked."""
     path = described(tmp_path, "file: data/wind.csv, outside: error, between: cubic")
-    system, _, _ = load(path)
-    assert system is not None
+    system = system_of(path)
     before = meaning(system)
     for written, name in ((to_yaml(system), "again.yaml"), (to_text(system), "again.txt")):
         (tmp_path / name).write_text(written)
         again, found, _ = load(tmp_path / name)
         assert again == system, list(found)
     described(tmp_path, "file: data/wind.csv, outside: error, between: cubic", ROWS.replace("3.2", "3.3"))
-    changed, _, _ = load(path)
-    assert changed is not None
+    changed = system_of(path)
     assert meaning(changed) != before
     pinned, found, _ = load(tmp_path / "again.yaml")
     assert pinned is None

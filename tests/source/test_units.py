@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from conftest import system_of
 
 from mbsym.model.units import ENERGY, LENGTH, MASS, TIME, Units, times, written
 from mbsym.source import read, to_text, to_yaml
@@ -75,8 +76,7 @@ def test_a_lost_factor_is_found() -> None:
 
 def test_without_units_nothing_changes_and_nothing_is_loaded() -> None:
     text = (ROOT / "systems" / "satellite.yaml").read_text(encoding="utf-8")
-    plain, _ = read(text, "x.yaml")
-    assert plain is not None
+    plain = system_of(text, "x.yaml")
     assert plain.units == Units()
     assert not plain.units
     assert "unit" not in to_yaml(plain)
@@ -87,8 +87,7 @@ def test_without_units_nothing_changes_and_nothing_is_loaded() -> None:
 
 @pytest.mark.parametrize("write", [to_yaml, to_text])
 def test_units_survive_both_spellings(write: object) -> None:
-    system, _ = read(with_units(), "x.yaml")
-    assert system is not None
+    system = system_of(with_units(), "x.yaml")
     assert callable(write)
     again, complaints = read(write(system), "x.txt" if write is to_text else "x.yaml")
     assert again == system, [one.message for one in complaints]
@@ -214,8 +213,7 @@ loads:
   - spring: {coordinate: phi, stiffness: k}
   - damper: {coordinate: phi, coefficient: b}
 """
-    system, _ = read(text, "x.yaml")
-    assert system is not None
+    system = system_of(text, "x.yaml")
     assert system.units.of("b") == "g*mm^2/ms"
     assert system.units.rate_of("phi") == "1/ms"
     assert system.units.text(ENERGY) == "g*mm^2/ms^2"
@@ -230,8 +228,7 @@ bodies:
 loads:
   - spring: {coordinate: x, stiffness: k}
 """
-    system, _ = read(text, "x.yaml")
-    assert system is not None
+    system = system_of(text, "x.yaml")
     assert system.units.of("k") is None  # it is kg/s^2, but nobody said what the time is measured in
     assert system.units.of("m") == "kg"
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import SHIPPED
 from flint import fmpq
 
 import mbsym
@@ -17,7 +17,6 @@ from mbsym.sweeps import judged
 from mbsym.sweeps.deciding import classes, split
 from mbsym.sweeps.judged import EXACT, MASSLESS, NO_VERDICT, OUTSIDE, RIGHT, VERDICT, WORDS, StabilityMeasure
 
-SYSTEMS = Path(__file__).parents[2] / "systems"
 F = Fraction
 
 #: (system, axes, settings): gyroscopic, damped with circulation, cyclic, damped by a rod.
@@ -30,7 +29,7 @@ PLANES = [
 
 
 def made(name: str, axes: list[tuple[str, object, object]], settings: dict[str, Fraction]) -> StabilityMeasure:
-    analysis = mbsym.load(SYSTEMS / f"{name}.yaml")
+    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
     return StabilityMeasure(analysis, section(analysis, [Axis(n, F(a), F(b)) for n, a, b in axes], settings))
 
 
@@ -137,7 +136,7 @@ def test_a_sweep_says_what_the_map_says() -> None:
     from mbsym.maps.mapping import exact_map
     from mbsym.maps.result import Lack
 
-    analysis = mbsym.load(SYSTEMS / "satellite.yaml")
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
     measure = made(*PLANES[0])
     whole = exact_map(analysis, measure.section.axes, {"p1": F(2, 5), "p2": F(1, 5)})
     points = np.random.default_rng(11).uniform(-0.99, 0.99, (2, 500))

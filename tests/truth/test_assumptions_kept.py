@@ -8,20 +8,18 @@ sqrt((1 + m)^2) = 1 + m and sqrt((m - 1)^2) = 1 - m.
 from __future__ import annotations
 
 import random
-from pathlib import Path
 
 import pytest
+from conftest import STATEMENTS
 
 import mbsym
 from mbsym.mechanics.states import drawn
 from mbsym.problems.checks import EXACT
 from mbsym.problems.stabilisation.checks import check_stabilisation
 
-CASES = Path(__file__).parents[1] / "cases" / "statements"
-
 
 def test_the_degree_of_instability_is_checked_where_the_assumptions_hold() -> None:
-    found = mbsym.load(CASES / "assumed_unstable.yaml")
+    found = mbsym.load(STATEMENTS / "assumed_unstable.yaml")
     assert [region.degree for part in found.stabilisation.gyroscopic for region in part.regions] == [1]
     check = check_stabilisation(found.parameters_scene, found.judgeable, found.stabilisation)
     assert check is not None
@@ -30,12 +28,12 @@ def test_the_degree_of_instability_is_checked_where_the_assumptions_hold() -> No
 
 @pytest.mark.parametrize("name", ["assumed_roots", "assumed_opposite_signs", "assumed_in_speeds"])
 def test_roots_of_squares_have_the_sign_that_is_assumed(name: str) -> None:
-    for one in mbsym.load(CASES / f"{name}.yaml").claims:
+    for one in mbsym.load(STATEMENTS / f"{name}.yaml").claims:
         assert one.holds is one.claim.place.startswith("true"), one.claim
 
 
 def test_states_keep_assumptions_and_declared_signs() -> None:
-    found = mbsym.load(CASES / "assumed_roots.yaml")
+    found = mbsym.load(STATEMENTS / "assumed_roots.yaml")
     source = random.Random(1)
     for _ in range(5):
         values = drawn(found.system, found.ring, source)

@@ -6,17 +6,14 @@ alone.  In the angles themselves, in one of them and the difference, in any line
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from conftest import STATEMENTS
 
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.displacements import Displacements
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.stability.words import Because, Word
-
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 
 #: Angles of the two masses in two coordinates; regular each.
 COORDINATES = (("a", "b"), ("a", "a + b"), ("2*a - b", "b + a/3"), ("b - a", "b + a"))
@@ -85,7 +82,7 @@ def test_two_masses_on_a_hoop_drift_together() -> None:
 
     The sentence says so in the coordinates of the description.
     """
-    found = mbsym.load(CASES / "two-masses-on-hoop-undecided.yaml").stability
+    found = mbsym.load(STATEMENTS / "two-masses-on-hoop-undecided.yaml").stability
     assert found.verdict.word is Word.STABLE_BUT_CYCLIC
     assert found.verdict.theorem == "Routh"
     assert found.verdict.because(Because.DISPLACEMENTS)
@@ -117,7 +114,7 @@ def test_a_cylinder_in_a_cylinder_drifts_with_constraints_and_without() -> None:
     2 V = m2 g c th^2: a minimum for r1 > r2, frequency^2 = m2 g (M1 + M2)/(M1 M2 c), here 9.81 5.5/(6 0.75) = 11.99.
     """
     for name in ("rolling-cylinders-higher-order-decide", "same-by-hand-decided"):
-        found = mbsym.load(CASES / f"{name}.yaml").stability
+        found = mbsym.load(STATEMENTS / f"{name}.yaml").stability
         assert found.numerical is not None
         assert (found.numerical.word, found.numerical.theorem) == (Word.STABLE_BUT_CYCLIC, "Routh")
         assert found.verdict.word is Word.DEPENDS  # on the sign of r1 - r2

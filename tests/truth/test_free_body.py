@@ -10,16 +10,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import product
-from pathlib import Path
 
 import pytest
+from conftest import STATEMENTS
 
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.words import Because, Word
-
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 
 SEQUENCES = [axes for axes in product((1, 2, 3), repeat=3) if axes[0] != axes[1] != axes[2]]
 MOMENTS = {1: Fraction(1), 2: Fraction(2), 3: Fraction(3)}
@@ -86,7 +84,7 @@ def test_the_verdict_is_that_of_the_axis(axes: tuple[int, ...], axis: int, motio
 
 
 def test_angles_that_are_not_those_of_the_description_are_told() -> None:
-    found = mbsym.load(CASES / "racket-no-result-in-this-rotation-order.yaml").stability
+    found = mbsym.load(STATEMENTS / "racket-no-result-in-this-rotation-order.yaml").stability
     assert found.verdict.because(Because.OTHER_ANGLES)
     assert "about axes 2, 1, 3 by q2, q1, q3" in found.verdict.explanation
     assert not body((2, 1, 3), "{q1: {value: 0, rate: W}}").stability.verdict.because(Because.OTHER_ANGLES)

@@ -27,6 +27,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.stability import ExactVerdicts
 from mbsym.problems.stability.words import Because, Word
+from tests.truth.test_invariance import polynomial
 
 MANY = int(os.environ.get("MBSYM_INVARIANCE", "14"))
 #: Random parameters at which the conditions are compared.
@@ -38,18 +39,6 @@ Values = Mapping[str, Fraction]
 
 def loaded(description: Description) -> Analysis:
     return mbsym.loads(json.dumps({"mbsym": 1, "name": "One motion", **description}), (4, 5, 6))
-
-
-def polynomial(found: Analysis, values: Values) -> list[Fraction]:
-    """The characteristic polynomial of the whole at values, the highest coefficient 1."""
-    whole = [Fraction(1)]
-    for part in found.stability.subsystems:
-        own = [Fraction(str(x.subs(dict(values)))) for x in part.characteristic]
-        whole = [
-            sum((whole[k] * own[n - k] for k in range(len(whole)) if 0 <= n - k < len(own)), Fraction(0))
-            for n in range(len(whole) + len(own) - 1)
-        ]
-    return [x / whole[-1] for x in whole]
 
 
 def words(found: Analysis, points: Sequence[Values]) -> tuple[Word, ...]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from math import cos, gamma, sin, sqrt
 
 import pytest
+from conftest import parsed
 
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
-from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import Expression, differentiate
+from mbsym.expressions.tree import differentiate
 from mbsym.numerics.conservation import Standing
 from mbsym.problems.stability.words import Word
 
@@ -163,19 +162,13 @@ def test_what_has_no_second_derivative_has_no_first_approximation(potential: str
         mbsym.loads(SMOOTH.replace("POTENTIAL", potential).replace("  - LOAD\n", ""), (4, 5, 6)).stability  # noqa: B018
 
 
-def tree(text: str) -> Expression:
-    parsed = parse_expression(text, Complaints(), lambda start, end: Span(1, start + 1, end - start))
-    assert parsed is not None
-    return parsed
-
-
 @pytest.mark.parametrize(
     "text", ["abs(x - y)**3", "(x - y)**2*abs(x - y)/2", "-abs(x*y)**5/(1 + x**2)", "y*sin(x)*abs(x)**2"]
 )
 @pytest.mark.parametrize("place", [(0.7, 0.2), (-0.4, 0.3), (0.3, 0.3), (0.0, 0.5)])
 def test_slopes_on_both_sides_of_a_kink_and_there(text: str, place: tuple[float, float]) -> None:
     """By central differences; no sign is left."""
-    slope = str(differentiate(tree(text), "x"))
+    slope = str(differentiate(parsed(text), "x"))
     assert "sign" not in slope
     x, y = place
     above, at, below = (
@@ -197,4 +190,4 @@ def test_slopes_on_both_sides_of_a_kink_and_there(text: str, place: tuple[float,
     ],
 )
 def test_a_product_that_is_written_with_a_sign(text: str, said: str) -> None:
-    assert str(tree(text)) == said
+    assert str(parsed(text)) == said

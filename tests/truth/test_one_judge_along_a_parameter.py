@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
+from conftest import STATEMENTS
 
 import mbsym
 from mbsym.analysis.judge import exceptional
 from mbsym.report.words.exceptional_values import as_text, lines
-
-CASES = Path(__file__).parents[1] / "cases" / "statements"
 
 
 @pytest.mark.parametrize(
@@ -30,7 +28,7 @@ CASES = Path(__file__).parents[1] / "cases" / "statements"
 def test_what_an_energy_decides_is_not_left_open(
     name: str, parameter: str, interval: tuple[int, int], others: dict[str, int], value: str, theorem: str
 ) -> None:
-    analysis = mbsym.load(CASES / f"{name}.yaml")
+    analysis = mbsym.load(STATEMENTS / f"{name}.yaml")
     numbers = {key: Fraction(number) for key, number in others.items()}
     found = exceptional(analysis, parameter, (Fraction(interval[0]), Fraction(interval[1])), numbers)
     told = list(lines(found))

@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 from truth import test_accuracy_judged as judge
 from truth.independent.scenes import SCENES, Scene
 
@@ -27,7 +27,6 @@ from mbsym.numerics.planning.prices import cost, cost_of_rows
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.trade.trial import trial_of
 from mbsym.report.runs.plan_words import bound_lines, choice_lines
-from mbsym_cli.main import main
 
 DOUBLE = Path(__file__).parents[2] / "systems" / "double-pendulum.yaml"
 
@@ -222,10 +221,9 @@ def test_what_a_plan_says_is_what_stands_in_its_file_and_is_so(scene: Scene, tar
 
     Nothing that was measured is cheaper by 1.5 and meets the doubled target.
     """
-    path = tmp_path / "scene.yaml"
-    path.write_text(scene.text)
+    path = filed(tmp_path / "scene.yaml", scene.text)
     words = ["--time", repr(scene.time), "--accuracy", repr(target), "--samples", "101", "-v", "--format", "csv"]
-    done = CliRunner().invoke(main, ["simulate", str(path), *words, "--out", str(tmp_path)])
+    done = invoked("simulate", path, *words, "--out", tmp_path)
     said, file = sections(done.output), json.loads((tmp_path / "simulation.json").read_text())
     plan = file["plan"]
     (bound,) = plan["bounds"]

@@ -9,6 +9,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from conftest import STATEMENTS
 from flint import arb, arb_mat, ctx
 
 import mbsym
@@ -33,13 +34,11 @@ from mbsym.numerics.trade.reference_search import (
 from mbsym.numerics.trade.tradeoff import tradeoff
 from mbsym.report.runs.simulation_words import error_lines
 
-CASES = Path(__file__).parents[1] / "cases" / "statements"
-
 needs_extended = pytest.mark.skipif(not available("extended"), reason="this machine has no extended arithmetic")
 
 
 def case(name: str) -> Dynamics:
-    return Dynamics(scenario(mbsym.load(CASES / name).system))
+    return Dynamics(scenario(mbsym.load(STATEMENTS / name).system))
 
 
 def true_error(found: Reference, places: Any, truth: Any) -> float:
@@ -239,11 +238,11 @@ def test_solutions_that_do_not_agree_are_no_reference(monkeypatch: pytest.Monkey
 
 def test_a_scale_of_zero_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The cart that rests by symmetry, measured by its own rounding: the two runs seem to have parted."""
-    run = mbsym.simulate(CASES / "symmetric_cart.yaml", 3, estimate=True)
+    run = mbsym.simulate(STATEMENTS / "symmetric_cart.yaml", 3, estimate=True)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.parted is None
     monkeypatch.setattr("mbsym.numerics.trade.comparison.scaled", lambda own, usual, apart: np.maximum(own, 1e-300))
-    planted = mbsym.simulate(CASES / "symmetric_cart.yaml", 3, estimate=True)
+    planted = mbsym.simulate(STATEMENTS / "symmetric_cart.yaml", 3, estimate=True)
     assert isinstance(planted.error, ErrorEstimate)
     assert planted.error.parted is not None
 
@@ -276,7 +275,7 @@ def test_what_two_runs_differ_by_is_no_bound_of_the_error_after_they_have_parted
 
     At t = 60 one of them stands at -pi, the better one at 3 pi: the run is nearer to the truth, pi, than to the other.
     """
-    run = mbsym.simulate(CASES / "separatrix.yaml", 60, method="dop853", estimate=True)
+    run = mbsym.simulate(STATEMENTS / "separatrix.yaml", 60, method="dop853", estimate=True)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.parted is not None
     times, states = run.trajectory.times, run.trajectory.states

@@ -138,15 +138,26 @@ NEWTONIAN_GRAVITY = Kind(_action_of_order, _force_function_of_order, notes=_note
 
 
 def _uniform_force_function(load: UniformGravity, scene: Scene[S]) -> S:
-    """U = sum m g.r_C, without turning r_C into inertial axes: g turns outwards, and g.r_O adds up joint by joint."""
+    """U = sum m g.r_C."""
+    return lifting(scene, INERTIAL, scene.vector(load.acceleration, INERTIAL))
+
+
+def lifting(scene: Scene[S], about: str, w: Vector[S]) -> S:
+    """sum m w.c over the bodies that a frame carries, c from its origin.
+
+    Nothing is turned inwards: w turns outwards with the bodies, and its products add up joint by joint.
+    """
     algebra = scene.algebra
-    field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
-    height = {INERTIAL: algebra.zero}
+    field: dict[str, Vector[S]] = {about: w}
+    height: dict[str, S] = {about: algebra.zero}
     total = algebra.zero
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
-        field[name] = scene.to_axes(field[parent], name)
-        height[name] = algebra.reduce(height[parent] + field[parent].dot(motion.offset))
+        if name != about:
+            if parent not in field:
+                continue
+            field[name] = scene.to_axes(field[parent], name)
+            height[name] = algebra.reduce(height[parent] + field[parent].dot(motion.offset))
         if not algebra.vanishes(motion.mass):
             rise = height[name] + field[name].dot(motion.mass_centre)
             total = total + algebra.times(motion.mass, rise)

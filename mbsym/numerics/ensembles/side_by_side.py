@@ -42,8 +42,6 @@ from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau, address,
 #: The methods that run side by side.
 TABLEAUX = {tableau.name: tableau for tableau in (DOP853, RK45, RK4)}
 
-_WHY = (Cause.BLOW_UP, Cause.STUCK, Cause.STEP_LIMIT)
-
 
 @dataclass(frozen=True)
 class Fate:

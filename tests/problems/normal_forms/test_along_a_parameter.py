@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from conftest import SHIPPED, filed
 from flint import arb
 from jsonschema import Draft202012Validator
 
@@ -21,8 +22,6 @@ from mbsym.report.schemas import schema
 from mbsym.report.words.exceptional_values import lines
 from mbsym_cli.main import main
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
-
 #: Meyer & Schmidt (1986), Deprit (1967), Markeev (1969), Sokolskii (1975): 27 mu (1 - mu)/4 = w1^2 w2^2.
 TRIANGULAR = [
     ("0.010913667677200662890", Outcome.STABLE, Theorem.ARNOLD_MOSER_6),
@@ -34,7 +33,7 @@ TRIANGULAR = [
 
 def test_triangular_points() -> None:
     one = Fraction(1)
-    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    analysis = mbsym.load(SHIPPED / "three-bodies.yaml")
     found = exceptional(analysis, "mu", (Fraction(0), Fraction(1, 2)), {"a": one, "n": one, "m": one})
     assert [(x.judged.outcome, x.judged.theorem) for x in found.specials] == [x[1:] for x in TRIANGULAR]
     for special, (value, _, _) in zip(found.specials, TRIANGULAR, strict=True):
@@ -50,7 +49,7 @@ def test_the_sleeping_top_has_no_exception_above_its_border() -> None:
     At the border it is stable: with both momenta C W the reduced potential (C W)^2 tan^2(th/2)/(2 A) + m g l cos th is
     there ((C W)^2/(48 A) + m g l/24) th^4 + ..., a minimum.
     """
-    analysis = mbsym.load(SYSTEMS / "heavy-top.yaml")
+    analysis = mbsym.load(SHIPPED / "heavy-top.yaml")
     values = {name: Fraction(1) for name in ("A", "C", "m", "l", "g")}
     found = exceptional(analysis, "Omega", (Fraction(1), Fraction(3)), values)
     border, *others = found.specials
@@ -99,7 +98,7 @@ def test_a_zero_root_by_its_cubic_term() -> None:
 
 def test_where_the_coefficient_vanishes_no_border_is_soft_or_hard() -> None:
     """A pendulum without friction is no focus: a = 0 there, exactly."""
-    analysis = mbsym.load(SYSTEMS / "simple-pendulum.yaml")
+    analysis = mbsym.load(SHIPPED / "simple-pendulum.yaml")
     values = dict.fromkeys(("m", "l", "J", "g"), Fraction(1))
     found = exceptional(analysis, "b", (Fraction(-1), Fraction(1)), values)
     assert [(x.exactly, x.judged.outcome, x.judged.why) for x in found.specials] == [
@@ -120,21 +119,21 @@ def test_an_interval_with_a_singular_value_is_refused() -> None:
 
 def test_a_planted_mistake_is_not_taken_for_a_root() -> None:
     """A wrong coefficient moves the list away from Routh's value: the polynomials are those of the description."""
-    text = (SYSTEMS / "three-bodies.yaml").read_text(encoding="utf-8").replace("+ mu/sqrt((x", "+ 2*mu/sqrt((x")
+    text = (SHIPPED / "three-bodies.yaml").read_text(encoding="utf-8").replace("+ mu/sqrt((x", "+ 2*mu/sqrt((x")
     with pytest.raises(Unavailable):
         exceptional(mbsym.loads(text), "mu", (Fraction(0), Fraction(1, 2)), dict.fromkeys("anm", Fraction(1)))
 
 
 def test_refusals() -> None:
     one, interval = Fraction(1), (Fraction(0), Fraction(1))
-    satellite = mbsym.load(SYSTEMS / "gravity-gradient.yaml")
+    satellite = mbsym.load(SHIPPED / "gravity-gradient.yaml")
     values = {parameter.name: one for parameter in satellite.system.parameters}
     with pytest.raises(NotAlong, match="two frequencies"):
         exceptional(satellite, "A", interval, values)
     with pytest.raises(NotExpanded, match="under constraints only rests"):
-        exceptional(mbsym.load(SYSTEMS / "rolling-disc.yaml"), "m", interval, {})
+        exceptional(mbsym.load(SHIPPED / "rolling-disc.yaml"), "m", interval, {})
     with pytest.raises(NotAlong, match="sum is zero"):
-        exceptional(mbsym.load(SYSTEMS / "ziegler.yaml"), "P", interval, dict.fromkeys("mlk", one))
+        exceptional(mbsym.load(SHIPPED / "ziegler.yaml"), "P", interval, dict.fromkeys("mlk", one))
     linear = mbsym.loads(
         "mbsym: 1\nname: linear\nparameters: {a: real}\nloads: [potential: a*x**2/2 + y**2]\nmotion: {}\n"
         "bodies: [{name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}]\n"
@@ -145,20 +144,20 @@ def test_refusals() -> None:
 
 def test_the_command(tmp_path: Path) -> None:
     runner = CliRunner()
-    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), "--vary", "mu=1/100:1/50"])
+    done = runner.invoke(main, ["nonlinear", str(SHIPPED / "three-bodies.yaml"), "--vary", "mu=1/100:1/50"])
     assert done.exit_code == 0
     assert "mu = 0.010913667677200662890: stable (Arnold-Moser, order 6)" in done.output
-    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), "--vary", "mu=1/100:1/50", "--json"])
+    done = runner.invoke(main, ["nonlinear", str(SHIPPED / "three-bodies.yaml"), "--vary", "mu=1/100:1/50", "--json"])
     assert [one["verdict"] for one in json.loads(done.output)["values"]] == ["stable", "unstable"]
     wrong = ["--set", "b=1", "--set", "a=x", "--json"]
-    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), *wrong])
+    done = runner.invoke(main, ["nonlinear", str(SHIPPED / "three-bodies.yaml"), *wrong])
     assert done.exit_code == 2
     assert [code in done.output for code in ("unknown-name", "bad-number")] == [True] * 2
 
 
 def test_without_a_parameter_to_vary_the_values_decide(tmp_path: Path) -> None:
     """27 mu (1 - mu) is 0.27 at mu = 1/100 and 1.28 > 1 at 1/20, where Routh's condition fails."""
-    runner, file = CliRunner(), SYSTEMS / "three-bodies.yaml"
+    runner, file = CliRunner(), SHIPPED / "three-bodies.yaml"
     assert "the motion is stable (Arnold-Moser)" in runner.invoke(main, ["nonlinear", str(file)]).output
     done = runner.invoke(main, ["nonlinear", str(file), "--set", "mu=1/20"])
     assert (done.exit_code, "the motion is unstable" in done.output) == (0, True)
@@ -173,9 +172,8 @@ def test_without_a_parameter_to_vary_the_values_decide(tmp_path: Path) -> None:
 
 def test_without_numbers_formulas_are_told_or_the_command_that_gives_them(tmp_path: Path) -> None:
     runner = CliRunner()
-    text = (SYSTEMS / "three-bodies.yaml").read_text(encoding="utf-8")
-    file = tmp_path / "three.yaml"
-    file.write_text("".join(x for x in text.splitlines(True) if not x.startswith("values:")), encoding="utf-8")
+    text = (SHIPPED / "three-bodies.yaml").read_text(encoding="utf-8")
+    file = filed(tmp_path / "three.yaml", "".join(x for x in text.splitlines(True) if not x.startswith("values:")))
     done = runner.invoke(main, ["nonlinear", str(file)])
     assert done.exit_code == 0
     assert "D4 = " in done.output
@@ -183,7 +181,7 @@ def test_without_numbers_formulas_are_told_or_the_command_that_gives_them(tmp_pa
     command = next(x for x in done.output.splitlines() if "--set mu=NUMBER" in x)
     words = command.replace("NUMBER", "1", 1).replace("mu=1 ", "mu=1/100 ").replace("NUMBER", "1").split()[1:]
     assert "the motion is stable (Arnold-Moser)" in runner.invoke(main, words).output
-    text = (SYSTEMS / "gravity-gradient.yaml").read_text(encoding="utf-8")
+    text = (SHIPPED / "gravity-gradient.yaml").read_text(encoding="utf-8")
     file.write_text("".join(x for x in text.splitlines(True) if not x.startswith("values:")), encoding="utf-8")
     done = runner.invoke(main, ["nonlinear", str(file)])
     assert (done.exit_code, "missing-value" in done.output, "--set R=1" in done.output) == (2, True, True)

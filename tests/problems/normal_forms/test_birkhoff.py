@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
-from conftest import parsed
+from conftest import SHIPPED, parsed
 from flint import acb, fmpq
 
 import mbsym
@@ -17,12 +16,10 @@ from mbsym.problems.normal_forms.birkhoff import NormalForm, diagonalised, norma
 from mbsym.problems.normal_forms.expansion import Numbers, expansion
 from mbsym.problems.normal_forms.result import defects
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
-
 
 def _exactly(order: int, mu: fmpq | None) -> tuple[Tower, Truncated, NormalForm]:
     """The triangular point at a rational mu, or in mu."""
-    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    analysis = mbsym.load(SHIPPED / "three-bodies.yaml")
     found = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order, ())
     tower = Tower(("mu",))
     values = {"mu": tower.parameter("mu") if mu is None else tower.element(mu), **dict.fromkeys("anm", tower.one)}

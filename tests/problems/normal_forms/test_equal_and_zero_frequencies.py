@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 from flint import acb, arb, ctx
 
 import mbsym
@@ -17,7 +17,6 @@ from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.twist import NotVerified
 from mbsym.report.words.exceptional_values import lines
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
 HALF = acb("0.5")
 
 
@@ -89,7 +88,7 @@ def test_a_planted_mistake_of_either_route_is_caught(monkeypatch: pytest.MonkeyP
 
 def test_the_triangular_points_at_rouths_value() -> None:
     """A = 59/864: D. S. Schmidt, Versal normal form of the restricted problem of three bodies near L4 (1995)."""
-    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    analysis = mbsym.load(SHIPPED / "three-bodies.yaml")
     found = exceptional(analysis, "mu", (Fraction(3, 100), Fraction(1, 2)), dict.fromkeys(("a", "n", "m"), Fraction(1)))
     (routh,) = found.specials
     assert (routh.judged.outcome, routh.judged.theorem) == (Outcome.STABLE, Theorem.EQUAL)

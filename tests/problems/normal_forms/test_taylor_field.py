@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.expansion import expansion
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
-
 
 def _field(name: str, order: int = 4, cyclic: tuple[str, ...] = ()) -> object:
-    analysis = mbsym.load(SYSTEMS / f"{name}.yaml")
+    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
     return taylor_field(expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order, cyclic))
 
 

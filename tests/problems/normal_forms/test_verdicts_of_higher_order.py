@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 from flint import acb, arb, ctx, fmpq, fmpq_poly
 
 import mbsym
@@ -16,8 +16,6 @@ from mbsym.problems.normal_forms import Focus, Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.exact import Resonant
 from mbsym.problems.normal_forms.twist import judged, vectors
 from mbsym.report.words.normal_form_words import sentences
-
-SYSTEMS = Path(__file__).parents[3] / "systems"
 
 ONE_COORDINATE = """
 mbsym: 1
@@ -123,7 +121,7 @@ def test_vectors_are_primitive_and_told_once() -> None:
 
 
 def test_triangular_points() -> None:
-    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    analysis = mbsym.load(SHIPPED / "three-bodies.yaml")
     found = analysis.normal_forms
     assert (found.at_values.outcome, found.at_values.theorem) == (Outcome.STABLE, Theorem.ARNOLD_MOSER)
     assert found.first.value == "gyroscopically stabilised only"
@@ -133,7 +131,7 @@ def test_triangular_points() -> None:
 
 
 def test_a_wrong_formula_is_found() -> None:
-    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    analysis = mbsym.load(SHIPPED / "three-bodies.yaml")
     with analysis.unvouched():
         found = analysis.normal_forms
     wrong = replace(found, in_symbols=replace(found.in_symbols, determinant=found.in_symbols.trace))
@@ -150,7 +148,7 @@ def test_the_sleeping_top_by_arnold_and_moser() -> None:
 
     With symmetry nothing resonates: cubic terms vanish, and H_4 is a function of the actions.
     """
-    found = mbsym.load(SYSTEMS / "heavy-top.yaml").normal_forms
+    found = mbsym.load(SHIPPED / "heavy-top.yaml").normal_forms
     assert found.cyclic == ("phi",)
     assert found.at_values.theorem is Theorem.ARNOLD_MOSER
     one, other = found.at_values.frequencies
@@ -341,12 +339,12 @@ def test_one_zero_root(force: str, potential: str, outcome: Outcome) -> None:
 def test_constraints_and_given_matrices_are_refused() -> None:
     for name in ("rolling-disc", "triangular-points"):
         with pytest.raises(Unavailable):
-            mbsym.load(SYSTEMS / f"{name}.yaml").normal_forms  # noqa: B018
+            mbsym.load(SHIPPED / f"{name}.yaml").normal_forms  # noqa: B018
 
 
 def test_more_degrees_of_freedom_are_never_said_to_be_stable_where_energy_is_not_definite() -> None:
     """DeBra-Delp: a satellite that gyroscopic forces hold up, three frequencies of different signs."""
-    text = (SYSTEMS / "gravity-gradient.yaml").read_text(encoding="utf-8")
+    text = (SHIPPED / "gravity-gradient.yaml").read_text(encoding="utf-8")
     found = mbsym.loads(text).normal_forms
     assert found.at_values.theorem is Theorem.DEFINITE
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import re
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 from jsonschema import Draft202012Validator
 from terminal import told
 
@@ -23,7 +23,6 @@ from mbsym.report.targets import TARGETS
 from mbsym.report.words.exceptional_values import VANISHING, as_text
 from mbsym.report.words.normal_form_words import LINEAR, REASONS, THEOREMS, sentences
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
 SOFT = """
 mbsym: 1
 name: soft
@@ -40,7 +39,7 @@ values: {w: 2}
 
 def systems() -> dict[str, mbsym.Analysis]:
     found = {
-        name: mbsym.load(SYSTEMS / f"{name}.yaml", (6, 11))
+        name: mbsym.load(SHIPPED / f"{name}.yaml", (6, 11))
         for name in ("three-bodies", "heavy-top", "ziegler", "spring-pendulum")
     }
     for force in ("-x_dot**3", "x_dot**5", "x*x_dot**2 + x_dot**3"):
@@ -59,7 +58,7 @@ def test_results_follow_the_schema() -> None:
 
 def test_exceptional_values_follow_the_schema() -> None:
     for name, parameter, ends in (("three-bodies", "mu", (0, 1)), ("ziegler-damped", "P", (0, 10))):
-        analysis = mbsym.load(SYSTEMS / f"{name}.yaml")
+        analysis = mbsym.load(SHIPPED / f"{name}.yaml")
         values = given_values(analysis.system, {})
         found = exceptional(analysis, parameter, (Fraction(ends[0]), Fraction(ends[1])), values)
         content = json.loads(as_text(analysis.system, found))

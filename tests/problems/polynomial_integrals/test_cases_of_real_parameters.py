@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from click.testing import CliRunner
-
-from mbsym_cli.main import main
+from conftest import filed, invoked
 
 PLANE = """
 mbsym: 1
@@ -19,10 +17,8 @@ loads:
 
 
 def _cases(tmp_path, text, *options):
-    path = tmp_path / "point.yaml"
-    path.write_text(text)
-    done = CliRunner().invoke(main, ["integrals", str(path), "--cases", *options])
-    assert done.exit_code == 0, done.output
+    path = filed(tmp_path / "point.yaml", text)
+    done = invoked("integrals", path, "--cases", *options, code=0)
     lines = [line.rstrip() for line in done.output.split("Special cases")[1].splitlines()]
     return [
         line.strip() for line in lines if line.startswith("    ") and not line.startswith("     ") and " = " in line

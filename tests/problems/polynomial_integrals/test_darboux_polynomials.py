@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 from flint import Ordering, fmpq_mpoly_ctx
 
 import mbsym
@@ -23,8 +23,6 @@ from mbsym.problems.polynomial_integrals import (
 )
 from mbsym.problems.polynomial_integrals.darboux import rest_means
 from mbsym.problems.polynomial_integrals.modular import PRIMES, lifted
-
-SYSTEMS = Path(__file__).parents[3] / "systems"
 
 
 def planted(names=("k",)):
@@ -76,7 +74,7 @@ def test_where_the_field_is_not_at_rest_nothing_is_proved():
 
 
 def of_file(name, values, degree):
-    system = mbsym.load(SYSTEMS / f"{name}.yaml")
+    system = mbsym.load(SHIPPED / f"{name}.yaml")
     there = polynomial.setting(system, {key: Fraction(x) for key, x in values.items()})
     return there, polynomial.integrals_of(there, degree)
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 import mbsym
@@ -13,8 +13,6 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
 from mbsym.problems.polynomial_integrals import grading, on_level, other_levels_of, polynomial_integrals
 from mbsym.problems.polynomial_integrals.other_levels import _Search, _weights
-
-SYSTEMS = Path(__file__).parents[3] / "systems"
 
 
 def planted(c, slope=1):
@@ -73,7 +71,7 @@ def test_a_unit_vector_fixes_the_size():
 
 def test_of_heavy_tops_there_are_none_at_any_value():
     """Scaling: the area integral has the weight 3, the square of gamma 4, and K would have a negative weight."""
-    system = mbsym.load(SYSTEMS / "goryachev-chaplygin.yaml")
+    system = mbsym.load(SHIPPED / "goryachev-chaplygin.yaml")
     there = polynomial.setting(system, {name: Fraction(1) for name in ("C", "m", "g", "x0")})
     found = polynomial.integrals_of(there, 4)
     energy, area = other_levels_of(found, there.kinds, there.known).levels

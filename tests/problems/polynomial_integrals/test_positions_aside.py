@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import jsonschema
 import pytest
-from click.testing import CliRunner
+from conftest import filed, invoked
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -18,7 +18,6 @@ from mbsym.report.messages import messages
 from mbsym.report.plain_writer import Writer
 from mbsym.report.schemas import schema
 from mbsym.report.words import integrals_words
-from mbsym_cli.main import main
 
 FREE_BODY = """
 mbsym: 1
@@ -69,17 +68,16 @@ def test_every_integral_of_a_free_body_is_not_said_of_those_that_hold_its_orient
 
 def test_what_the_equations_do_not_contain_is_in_the_data_and_in_what_is_said_of_a_line(tmp_path):
     """A charge in a magnetic field keeps x' - B y and y' + B x for every B: only integrals without x, y are denied."""
-    path = tmp_path / "charge.yaml"
-    path.write_text(
+    path = filed(
+        tmp_path / "charge.yaml",
         PARTICLE.replace("bodies:", "parameters: {B: real}\nbodies:")
-        + "loads:\n  - {generalized force: {x: B*y_dot, y: -B*x_dot}}\n"
+        + "loads:\n  - {generalized force: {x: B*y_dot, y: -B*x_dot}}\n",
     )
-    done = CliRunner().invoke(main, ["integrals", str(path), "--vary", "B=-1:1"])
-    assert done.exit_code == 0, done.output
+    done = invoked("integrals", path, "--vary", "B=-1:1", code=0)
     told = " ".join(done.output.split())
     assert "rational or not, there is no further integral of weight up to 4 that does not contain x, y (proved" in told
     assert "B = 0 further integral of weight 1: x_dot" in told
-    done = CliRunner().invoke(main, ["integrals", str(path), "--json"])
+    done = invoked("integrals", path, "--json")
     data = json.loads(done.output)
     jsonschema.validate(data, schema("integrals"))
     assert data["not_contained"] == ["x", "y"]
@@ -87,10 +85,8 @@ def test_what_the_equations_do_not_contain_is_in_the_data_and_in_what_is_said_of
 
 def test_a_free_particle_has_homogeneous_equations_and_relations_are_looked_for(tmp_path):
     """x'' = y'' = 0: the field of x', y' is zero, homogeneous of any degree; every polynomial in x', y' is kept."""
-    path = tmp_path / "free.yaml"
-    path.write_text(PARTICLE)
-    done = CliRunner().invoke(main, ["integrals", str(path), "--relations"])
-    assert done.exit_code == 0, done.output
+    path = filed(tmp_path / "free.yaml", PARTICLE)
+    done = invoked("integrals", path, "--relations", code=0)
     told = " ".join(done.output.split())
     assert "Under these weights the equations are quasi-homogeneous." in told
     # x y' - y x' is of degree two, and kept as well.

@@ -7,11 +7,10 @@ import re
 from dataclasses import replace
 from html import unescape
 from itertools import product
-from pathlib import Path
 
 import jsonschema
 import pytest
-from click.testing import CliRunner
+from conftest import SHIPPED, filed, invoked
 
 import mbsym
 from mbsym.analysis import polynomial
@@ -21,10 +20,8 @@ from mbsym.problems.polynomial_integrals import linear_relations
 from mbsym.report.plain_writer import Writer
 from mbsym.report.schemas import schema
 from mbsym.report.words import integrals_words
-from mbsym_cli.main import main
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
-KOVALEVSKAYA = (SYSTEMS / "kovalevskaya.yaml").read_text(encoding="utf-8")
+KOVALEVSKAYA = (SHIPPED / "kovalevskaya.yaml").read_text(encoding="utf-8")
 CHAPLYGIN = KOVALEVSKAYA.replace("[2*C, 2*C, C]", "[4*C, 4*C, C]").split("claims:")[0]
 
 
@@ -69,7 +66,7 @@ def test_problem_seven_goes_on_with_what_is_found():
     assert [one.name for one in listed] == [*usual, "integral of weight 4"]
     assert (listed[-1].status, str(listed[-1].formula)) == ("proved", str(both.polynomial_integrals.formulas[-1]))
     assert [one.name for one in both.integrals] == usual  # what problem 9 stands on is as it was
-    generic = Analysis(mbsym.load(SYSTEMS / "euler-poisson.yaml").system, problems=(7, 9))
+    generic = Analysis(mbsym.load(SHIPPED / "euler-poisson.yaml").system, problems=(7, 9))
     assert [one.name for one in generic.stage(7).value] == usual
 
 
@@ -88,14 +85,12 @@ def test_what_problem_seven_goes_on_with_falls_with_the_check(monkeypatch):
 
 
 def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
-    path = tmp_path / "chaplygin.yaml"
-    path.write_text(CHAPLYGIN, encoding="utf-8")
+    path = filed(tmp_path / "chaplygin.yaml", CHAPLYGIN)
     result = mbsym.load(path).polynomial_integrals
     assert result.integrals.new == ()
     assert [(one.level.weight, [w for w, _ in one.integrals]) for one in result.levels] == [(3, [3])]
     words = ["run", path, "-v", "--problems", "9", "--format", "json,latex,wolfram,html", "--language", "es"]
-    done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path / "out")])
-    assert done.exit_code == 0, done.output
+    done = invoked(*words, "--out", tmp_path / "out", code=0)
     assert "Peso 3, donde la de peso 3 (" in " ".join(done.output.split())
     data = json.loads((tmp_path / "out" / "results.json").read_text("utf-8"))
     jsonschema.validate(data, schema("results"))
@@ -108,7 +103,7 @@ def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
 
 def test_systems_in_angles_have_sines_and_cosines_for_variables():
     """The heavy top in Cardan angles: its energy and the momentum of phi, the area integral of degree four."""
-    analysis = Analysis(mbsym.load(SYSTEMS / "heavy-top.yaml").system, problems=(9,))
+    analysis = Analysis(mbsym.load(SHIPPED / "heavy-top.yaml").system, problems=(9,))
     result = analysis.polynomial_integrals
     assert result.integrals.field.variables[3:] == ("sin(alpha)", "cos(alpha)", "sin(beta)", "cos(beta)")
     assert result.integrals.new == ()
@@ -116,12 +111,12 @@ def test_systems_in_angles_have_sines_and_cosines_for_variables():
     assert [one.weight for one in result.integrals.generators] == [2, 3, 4]
     assert str(result.formulas[0]) in ("alpha_dot*sin(beta) + phi_dot", "phi_dot + alpha_dot*sin(beta)")
     # A damped pendulum keeps nothing.
-    damped = Analysis(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    damped = Analysis(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, problems=(9,)).polynomial_integrals
     assert (damped.integrals.generators, damped.integrals.complete) == ((), True)
 
 
 def test_a_wrong_sign_in_angles_is_found():
-    analysis = Analysis(mbsym.load(SYSTEMS / "double-pendulum.yaml").system, problems=(9,))
+    analysis = Analysis(mbsym.load(SHIPPED / "double-pendulum.yaml").system, problems=(9,))
     there = polynomial.setting(analysis)
     (energy,) = [p for _, p in there.known]
     field = there.field
@@ -143,20 +138,20 @@ def test_every_sentence_has_its_translations():
 
 def test_goryachev_and_chaplygins_integral_holds_on_the_level_of_the_area_integral():
     """D. N. Goryachev (1900): r (p^2 + q^2) - m g x0/C p gamma3 for A = B = 4 C, gamma upwards."""
-    found = mbsym.load(SYSTEMS / "goryachev-chaplygin.yaml")
+    found = mbsym.load(SHIPPED / "goryachev-chaplygin.yaml")
     result = found.polynomial_integrals
     assert not any(one.is_new for one in result.integrals.generators)
     assert [one.level.name for one in result.levels] == ["angular momentum about axis 3"]
     ((integral,),) = result.on_levels
     assert str(integral) == "C*(p**2 + q**2)*r - x0*m*g*p*gamma3"
     # The initial state of the file is on that level: 4 q gamma2 + r gamma3 = 4 (-12/25)(4/5) + (64/25)(3/5) = 0.
-    other = (SYSTEMS / "goryachev-chaplygin.yaml").read_text(encoding="utf-8").replace("4*C", "5*C")
+    other = (SHIPPED / "goryachev-chaplygin.yaml").read_text(encoding="utf-8").replace("4*C", "5*C")
     assert mbsym.loads(other).polynomial_integrals.levels == ()
 
 
 def test_hess_relation_of_the_shipped_file():
     """A x0 p + C z0 r divides its derivative (W. Hess, 1890); with another second moment of inertia nothing does."""
-    text = (SYSTEMS / "hess-appelrot.yaml").read_text(encoding="utf-8")
+    text = (SHIPPED / "hess-appelrot.yaml").read_text(encoding="utf-8")
     there = polynomial.setting(mbsym.loads(text))
     found = linear_relations(there.field, (1, 1, 1, 2, 2, 2), ["A", "C", "x0", "z0", "m", "g"])
     assert [str(there.formula(one.polynomial)) for one in found.relations] == ["A*x0*p + C*z0*r"]
@@ -167,9 +162,8 @@ def test_hess_relation_of_the_shipped_file():
 
 def test_a_symmetry_with_gamma_gives_the_energy_that_problem_7_finds(tmp_path):
     """A cart that is pushed by a constant F: t -> t + s changes L by d(F x)/dt, so that the energy less F x is kept."""
-    words = ["run", SYSTEMS / "cart-pendulum.yaml", "--problems", "7,9", "--format", "json"]
-    done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+    words = ["run", SHIPPED / "cart-pendulum.yaml", "--problems", "7,9", "--format", "json"]
+    invoked(*words, "--out", tmp_path, code=0)
     symmetries = json.loads((tmp_path / "results.json").read_text("utf-8"))["polynomial_integrals"]["symmetries"]
     assert [(one["field"], one["gauge"], one["new"]) for one in symmetries["symmetries"]] == [({}, "F*x", False)]
 
@@ -190,8 +184,7 @@ def test_symmetries_are_in_the_reports(tmp_path):
     """L of x and 2 y is that of an isotropic oscillator: no change when they turn, (x, y) moving as (-4 y, x)."""
     (tmp_path / "ellipses.yaml").write_text(ELLIPSES, encoding="utf-8")
     words = ["run", tmp_path / "ellipses.yaml", "--problems", "7,9", "--format", "json,latex,html,python"]
-    done = CliRunner().invoke(main, [*map(str, words), "--language", "ru", "--out", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+    invoked(*words, "--language", "ru", "--out", tmp_path, code=0)
     data = json.loads((tmp_path / "results.json").read_text("utf-8"))
     jsonschema.validate(data, schema("results"))
     symmetries = data["polynomial_integrals"]["symmetries"]
@@ -206,10 +199,10 @@ def test_symmetries_are_in_the_reports(tmp_path):
 
 def test_symmetries_that_are_denied():
     """Friction ends the symmetry in time, though not that of L; what problem 7 lists is not called new."""
-    damped = Analysis(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    damped = Analysis(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, problems=(9,)).polynomial_integrals
     assert damped.symmetries is not None
     assert (damped.symmetries.symmetries, damped.symmetries.complete) == ((), True)
-    sphere = Analysis(mbsym.load(SYSTEMS / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    sphere = Analysis(mbsym.load(SHIPPED / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
     assert sphere.symmetries is not None
     assert [one.name for one in sphere.symmetries.symmetries] == ["momentum of psi", "generalised energy"]
 
@@ -219,7 +212,7 @@ def test_sentences_of_symmetries_have_their_translations():
     from mbsym.report.messages import messages
     from mbsym.report.words import symmetry_words
 
-    found = Analysis(mbsym.load(SYSTEMS / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    found = Analysis(mbsym.load(SHIPPED / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
     listed = found.symmetries.symmetries
     said = {
         symmetry_words.OPENING,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 from flint import Ordering, fmpq_mpoly_ctx
 
 import mbsym
@@ -14,13 +14,11 @@ from mbsym.analysis import polynomial
 from mbsym.problems.polynomial_integrals import darboux_polynomials, grading, linear_relations, polynomial_integrals
 from mbsym.problems.polynomial_integrals.darboux import is_regular_on
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
-
 
 @pytest.mark.parametrize("name", ["spring-pendulum", "gravity-gradient"])
 def test_poles_of_coordinates_are_no_relations(name):
     """r' = r_dot and (cos theta)' = -sin(theta) theta_dot are not zero where r and cos theta are."""
-    there = polynomial.setting(mbsym.load(SYSTEMS / f"{name}.yaml"))
+    there = polynomial.setting(mbsym.load(SHIPPED / f"{name}.yaml"))
     found = linear_relations(there.field, (1,) * len(there.field.variables), (), free=False)
     told = {str(there.formula(one.polynomial)) for one in found.relations}
     assert not told & {"r", "cos(theta)"}
@@ -28,7 +26,7 @@ def test_poles_of_coordinates_are_no_relations(name):
 
 def test_a_plane_pendulum_is_a_spherical_one():
     """psi_dot = 0 stays so, although its equation is divided by the sine of theta."""
-    there = polynomial.setting(mbsym.load(SYSTEMS / "spherical-pendulum.yaml"))
+    there = polynomial.setting(mbsym.load(SHIPPED / "spherical-pendulum.yaml"))
     found = linear_relations(there.field, (1,) * len(there.field.variables), ("l", "m", "g"), free=False)
     assert [str(there.formula(one.polynomial)) for one in found.relations] == ["psi_dot"]
     assert all(one.nonzero == () for one in found.relations)

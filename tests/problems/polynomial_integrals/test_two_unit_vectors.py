@@ -8,8 +8,8 @@ potentials of Clebsch's kind in two fields has a further one of degree two is de
 from __future__ import annotations
 
 from fractions import Fraction
-from pathlib import Path
 
+from conftest import SHIPPED
 from flint import Ordering, fmpq_mpoly_ctx
 
 import mbsym
@@ -18,7 +18,6 @@ from mbsym.analysis import polynomial
 from mbsym.problems.polynomial_integrals import grading, polynomial_integrals
 from mbsym.report.words.integrals_words import sentences
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
 BODY = """mbsym: 1
 name: Body in two fields
 parameters: {A: {sign: positive}, B: {sign: positive}, C: {sign: positive}, k: {sign: positive}, n: {sign: positive}}
@@ -44,7 +43,7 @@ def found_in(text, numbers, degree):
 
 def test_jacobis_integral_of_a_satellite_is_no_further_one():
     """b along the radius, c against the normal: that of problem 7, with a third vector's length, and no other."""
-    text = (SYSTEMS / "gravity-gradient-quaternion.yaml").read_text(encoding="utf-8").split("# b is the outward")[0]
+    text = (SHIPPED / "gravity-gradient-quaternion.yaml").read_text(encoding="utf-8").split("# b is the outward")[0]
     there, found = found_in(text.replace("{e: quaternion}", "{b: 2, c: 3}"), {}, 3)
     assert there.field.variables == ("p", "q", "r", "b1", "b2", "b3", "c1", "c2", "c3")
     names = ["length of b", "product of b and c", "length of c", "generalised energy"]

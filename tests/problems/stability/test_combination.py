@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import chain, combinations, product
-from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import STATEMENTS
 from flint import fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 from hypothesis import assume, event, example, given
 from hypothesis import strategies as st
@@ -22,8 +22,6 @@ from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.verdict import LAW, PLAIN, Flaw, Verdict, coasting, combine, row_of
 from mbsym.problems.stability.words import Ground, Word
-
-CASES = Path(__file__).parents[2] / "cases" / "statements"
 
 # --- the algebra -----------------------------------------------------------------------------------------------------
 
@@ -314,7 +312,7 @@ def test_a_planted_lie_is_caught() -> None:
 
 
 def test_a_nutation_damper_beside_an_undamped_mass() -> None:
-    found = mbsym.load(CASES / "damper-beside-undamped-mass.yaml").stability
+    found = mbsym.load(STATEMENTS / "damper-beside-undamped-mass.yaml").stability
     assert [part.theory.at_point.verdict.word for part in found.subsystems if part.theory.at_point] == [
         Word.STABLE_BUT_CYCLIC,
         Word.ASYMPTOTIC_BUT_TURNED,

@@ -15,7 +15,7 @@ from fractions import Fraction
 from itertools import product
 
 import pytest
-from conftest import at_values
+from conftest import at_values, filed
 from terminal import told
 
 import mbsym
@@ -85,8 +85,7 @@ POINTS = [(Fraction(g), Fraction(a)) for g in ("-2", "-1", "0", "1", "2") for a 
 def test_the_judge_agrees_at_points_of_every_border(tmp_path) -> None:
     """Every place of a = b, against the exact verdict at points on its border."""
     text = FIELD.format(claims="  []", sign="real", a="a", b="a").replace("claims:\n  []", "")
-    path = tmp_path / "field.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = filed(tmp_path / "field.yaml", text)
     (part,) = mbsym.load(path).stability.subsystems
     listed = list(statements(part.ring, part.theory.requirements))
     seen = set()
@@ -120,8 +119,7 @@ DECAYING = {
 def test_borders_of_what_decays(linear: str, signs: str, tmp_path) -> None:
     """What is told of equality, against the exact verdict at points of every border."""
     text = f"mbsym: 1\nname: decaying\nparameters: {{{signs}}}\nlinear system: {linear}\n"
-    path = tmp_path / "decaying.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = filed(tmp_path / "decaying.yaml", text)
     (part,) = mbsym.load(path).stability.subsystems
     listed = [x for x in statements(part.ring, part.theory.requirements) if x.formula is not None]
     merely = {str(x.formula) for x in listed if x.place is Place.MERELY}

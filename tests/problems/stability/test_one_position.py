@@ -7,10 +7,9 @@ back to a value with the opposite rate and with all other velocities as they wer
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from conftest import SHIPPED
 from scipy.integrate import solve_ivp
 from sympy import Matrix, Symbol, lambdify
 
@@ -18,8 +17,7 @@ import mbsym
 from mbsym.problems.constraints.motion import oscillating_position
 from mbsym.problems.stability.words import CHAPLYGIN, Because, Word
 
-SYSTEMS = Path(__file__).parents[3] / "systems"
-DISC = (SYSTEMS / "rolling-disc.yaml").read_text(encoding="utf-8")
+DISC = (SHIPPED / "rolling-disc.yaml").read_text(encoding="utf-8")
 
 
 def _disc(load: str = "", values: str = "w: 5") -> str:
@@ -47,7 +45,7 @@ def test_on_the_border_nothing_is_said() -> None:
 
 @pytest.mark.parametrize("name", ["rolling-disc", "rolling-disc-speeds", "rolling-disc-in-a-circle"])
 def test_the_motion_does_not_know_our_coordinates(name: str) -> None:
-    system = mbsym.load(SYSTEMS / f"{name}.yaml")
+    system = mbsym.load(SHIPPED / f"{name}.yaml")
     verdict = system.stability.numerical
     assert verdict.word is Word.STABLE_BUT_CYCLIC
     assert verdict.because(Because.FOLLOWS_ONE)

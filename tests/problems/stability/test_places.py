@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from conftest import at_values
+from conftest import STATEMENTS, at_values
 from terminal import told
 
 import mbsym
@@ -13,8 +13,6 @@ from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Place
 from mbsym.report.conditions import statements
 from mbsym.report.targets import TARGETS
-
-CASES = Path(__file__).parents[2] / "cases" / "statements"
 
 
 def places(part: SubsystemStability) -> dict[str, tuple[str, Place]]:
@@ -31,14 +29,14 @@ def at(path: Path, **values: str) -> str:
 
 def test_a_lamina_spins_stably_about_its_largest_axis() -> None:
     """C = A + B makes the frequencies W and W sqrt((C - A)(C - B)/(A B)) coincide; K > 0 all the same."""
-    a = mbsym.load(CASES / "s_euler_lamina.yaml")
+    a = mbsym.load(STATEMENTS / "s_euler_lamina.yaml")
     (part,) = [x for x in a.stability.subsystems if len(x.coordinates) == 2]
     assert places(part) == {
         "v0 of factor 1": (">", Place.NECESSARY),
         "resultant of factors 1 and 2": ("!=", Place.METHOD),
     }
-    assert at(CASES / "s_euler_lamina.yaml", A="2", B="3", C="5", W="1").startswith("stable")  # not necessary
-    assert at(CASES / "s_euler_lamina.yaml", A="2", B="4", C="3", W="1") == "unstable"  # the middle axis: v0 < 0
+    assert at(STATEMENTS / "s_euler_lamina.yaml", A="2", B="3", C="5", W="1").startswith("stable")  # not necessary
+    assert at(STATEMENTS / "s_euler_lamina.yaml", A="2", B="4", C="3", W="1") == "unstable"  # the middle axis: v0 < 0
     line = "  resultant of factors 1 and 2: A + B - C != 0 (needed by this method, which leaves the rest open)"
     assert line in told(a, 6)
     assert "(needed by this method, which leaves the rest open)" in TARGETS["latex"].render(a, (6,))
@@ -51,7 +49,7 @@ def test_a_lamina_spins_stably_about_its_largest_axis() -> None:
 
 def test_squared_factors_of_discriminants_are_no_conditions_of_stability() -> None:
     """Two equal tops that spin in opposite directions: W1 + W2 = 0 makes frequencies coincide without Jordan blocks."""
-    a = mbsym.load(CASES / "cg_claims.yaml")
+    a = mbsym.load(STATEMENTS / "cg_claims.yaml")
     found = places(a.stability.subsystems[0])
     squared = {label: place for label, (relation, place) in found.items() if relation == "!="}
     assert len(squared) >= 4
@@ -61,14 +59,14 @@ def test_squared_factors_of_discriminants_are_no_conditions_of_stability() -> No
 
 def test_strict_inequalities_are_necessary_for_exponential_stability() -> None:
     """Not for asymptotic stability: x'' + x^2 x' + x = 0 is asymptotically stable without any root to the left."""
-    a = mbsym.load(CASES / "claims_spin.yaml")
+    a = mbsym.load(STATEMENTS / "claims_spin.yaml")
     (part,) = [x for x in a.stability.subsystems if len(x.coordinates) == 3]
     assert {place for _, place in places(part).values()} == {Place.EXPONENTIAL}
 
 
 def test_one_potential_well() -> None:
     """x'' = -(a - b)^2 x, exactly: at a = b that is x'' = 0, a free particle, which drifts."""
-    a = mbsym.load(CASES / "claims_min.yaml")
+    a = mbsym.load(STATEMENTS / "claims_min.yaml")
     (part,) = a.stability.subsystems
     assert places(part) == {"v0": ("!=", Place.DRIFTS)}
     assert {r.place for r in part.theory.stiffness.requirements} == {Place.SUFFICIENT}
@@ -76,9 +74,9 @@ def test_one_potential_well() -> None:
 
 def test_a_condition_that_another_one_implies_is_not_told() -> None:
     """C^2 Omega^2 - 4 A m l g > 0 says that C^2 Omega^2 - 2 A m l g > 0, and is < 0 where that is."""
-    top = mbsym.load(CASES.parents[2] / "systems" / "heavy-top.yaml").stability
+    top = mbsym.load(STATEMENTS.parents[2] / "systems" / "heavy-top.yaml").stability
     assert [str(x) for _, x, _ in top.subsystems[0].conditions] == ["C**2*Omega**2 - 4*A*m*l*g"]
-    pair = mbsym.load(CASES.parents[2] / "systems" / "gyroscopic-pair.yaml").stability
+    pair = mbsym.load(STATEMENTS.parents[2] / "systems" / "gyroscopic-pair.yaml").stability
     assert len(pair.subsystems[0].conditions) == 2  # g^2 - k1 - k2 is negative where g = 0
 
 

@@ -10,14 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from conftest import SHIPPED
+from conftest import SHIPPED, invoked
 
 import mbsym
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.formulas_by_name import root_text
 from mbsym.report.targets import TARGETS
-from mbsym_cli.main import main
 
 #: Descriptions whose values, with their relations, give every parameter a number.
 WITH_VALUES = ["dumbbell", "satellite", "heavy-top", "satellite-with-damper", "ziegler-damped", "orbital-gyrostat"]
@@ -68,8 +66,7 @@ def test_texts() -> None:
 
 
 def test_the_command_tells_them(tmp_path: Path) -> None:
-    result = CliRunner().invoke(main, ["run", "-v", str(SHIPPED / "dumbbell.yaml"), "--out", str(tmp_path)])
-    assert result.exit_code == 0, result.output
+    result = invoked("run", "-v", SHIPPED / "dumbbell.yaml", "--out", tmp_path, code=0)
     assert "Eigenvalues there, in the time t, of alpha: +- 0.00173205 i" in result.output
     told = json.loads((tmp_path / "results.json").read_text())["stability"]["eigenvalues_at_values"]
     assert told[1] == {"coordinates": ["beta"], "roots": [{"real": 0.0, "imaginary": 0.002, "multiplicity": 1}]}

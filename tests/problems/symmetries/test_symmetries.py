@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
@@ -18,8 +18,6 @@ from mbsym.analysis.symmetric import symmetries_of
 from mbsym.problems.polynomial_integrals import FUNCTION
 from mbsym.problems.symmetries import blocks
 from mbsym.problems.symmetries.search import DEPENDENT
-
-SYSTEMS = Path(__file__).parents[3] / "systems"
 
 TOP = """
 mbsym: 1
@@ -93,7 +91,7 @@ def test_an_axis_at_an_angle_that_is_a_parameter():
 
 
 def test_numbers_and_relations_are_put_in():
-    top = (SYSTEMS / "euler-poisson.yaml").read_text("utf-8").split("claims:")[0]
+    top = (SHIPPED / "euler-poisson.yaml").read_text("utf-8").split("claims:")[0]
     assert told(found(top, A=2, B=2, x0=0, y0=0)) == [({"r": "1"}, "0", "C*r")]
     assert found(top, A=2, B=2, x0=0, y0=1).new == ()
     related = top.replace("values:", "relations: {B: A, x0: 0*z0, y0: 0*z0}\nvalues:").replace("B: 2, ", "")
@@ -162,7 +160,7 @@ def test_what_depends_on_problem_7_is_called_so():
 
 
 def test_norms_are_no_symmetries():
-    result = symmetries_of(Analysis(mbsym.load(SYSTEMS / "gravity-gradient-quaternion.yaml").system))
+    result = symmetries_of(Analysis(mbsym.load(SHIPPED / "gravity-gradient-quaternion.yaml").system))
     assert [one.name for one in result.symmetries] == ["generalised energy"]
     assert result.complete
 
@@ -183,7 +181,7 @@ def test_a_mistake_in_the_equations_is_found_by_the_second_route(monkeypatch):
 
 def test_constraints_are_refused():
     with pytest.raises(Constrained):
-        symmetries_of(Analysis(mbsym.load(SYSTEMS / "rolling-disc.yaml").system))
+        symmetries_of(Analysis(mbsym.load(SHIPPED / "rolling-disc.yaml").system))
 
 
 def test_roots_are_told_apart_by_their_radicands():
