@@ -15,9 +15,12 @@ from mbsym.expressions.message import Message, joined
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import (
     ONE,
+    Call,
     Derivation,
     Expression,
     Name,
+    Number,
+    Operation,
     differentiate,
     names,
     number,
@@ -132,7 +135,7 @@ def _rates(system: System) -> dict[str, Expression]:
 
 def _check_mass(system: System, body: Body, draft: Draft, values: Mapping[str, Fraction], reading: Reading) -> None:
     signs = {parameter.name: parameter.sign for parameter in system.parameters}
-    value = number_of(body.mass, values)
+    value = value_of(body.mass, values)
     if (value is not None and value < 0) or sign_by_structure(body.mass, signs) == "negative":
         reading.error("negative-mass", "this mass is negative", _place(draft, "mass"), _values_hint(body.mass))
 
@@ -353,14 +356,19 @@ def in_formulas(system: System) -> frozenset[str]:
 
 def _occurring(value: Any) -> Iterator[str]:
     """The names in all expressions that a value holds."""
-    if isinstance(value, Name):
-        yield value.name
-    elif isinstance(value, tuple | list):
+    return (node.name for node in _nodes(value) if isinstance(node, Name))
+
+
+def _nodes(value: Any) -> Iterator[Name | Call | Operation]:
+    """The names, functions and operations in all expressions that a value holds."""
+    if isinstance(value, Name | Call | Operation):
+        yield value
+    if isinstance(value, tuple | list):
         for item in value:
-            yield from _occurring(item)
-    else:
+            yield from _nodes(item)
+    elif not isinstance(value, Name):
         for name in _field_names(value.__class__):
-            yield from _occurring(getattr(value, name))
+            yield from _nodes(getattr(value, name))
 
 
 @cache
@@ -396,6 +404,34 @@ def _check_given(system: System, reading: Reading) -> None:
         if (nothing := meaningless(expression, known)) is not None:
             node, why = nothing
             reading.error("no-number", "with the given values this is no real number: [[why]]", node.span, why=why)
+    _check_roots(system, known, reading)
+
+
+_OF_NEGATIVE = Message("with the given signs this is no real number: its argument is negative")
+
+
+def _check_roots(system: System, known: Mapping[str, Any], reading: Reading) -> None:
+    """Roots and logarithms of constants are real, by the signs of the parameters and by their values."""
+    signs = {parameter.name: parameter.sign for parameter in system.parameters}
+    held = (system.bodies, system.loads, system.constraints, system.linear)
+    roots: dict[Span | None, tuple[Expression, Expression]] = {}
+    for node in _nodes(held):
+        if isinstance(node, Call) and node.function in ("sqrt", "log"):
+            roots[node.span] = node, node.argument
+        elif isinstance(node, Operation) and node.operator == "**" and not _is_whole(node.right):
+            roots[node.span] = node, node.left
+    for span, (node, argument) in roots.items():
+        if not names(node):
+            continue  # it has been judged where it stands
+        if sign_by_structure(argument, signs) == "negative":
+            reading.error("no-number", _OF_NEGATIVE, span)
+        elif names(node) <= known.keys() and (nothing := meaningless(node, known)) is not None and nothing[0] is node:
+            message = Message("with the given values this is no real number: [[why]]", why=nothing[1])
+            reading.error("no-number", message, span)
+
+
+def _is_whole(exponent: Expression) -> bool:
+    return isinstance(exponent, Number) and exponent.value.denominator == 1
 
 
 def _check_relation_values(system: System, reading: Reading) -> None:

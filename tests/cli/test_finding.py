@@ -399,6 +399,26 @@ def test_long_conditions_are_told_by_the_letters_of_the_paper(tmp_path: Path) ->
     assert first in lines
 
 
+def test_letters_are_those_of_what_zero_roots_leave(tmp_path: Path) -> None:
+    """Watt's governor with friction, by hand: Lambda = lambda (a3 lambda^3 + ... + a0), and a0 is that of the rest."""
+    governor = """mbsym: 1
+name: governor
+parameters: {m: positive, l: positive, g: positive, b: positive, J: positive, T: positive, k: positive, s: positive}
+bodies:
+  - {name: shaft, rotation: {axes: [2], angles: [phi]}, inertia about: joint, mass: 0, inertia: [J, J, J]}
+  - {name: bob, attached to: shaft, rotation: {axes: [3], angles: [theta]}, mass centre: [0, -l, 0], mass: m}
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+  - damper: {coordinate: theta, coefficient: b}
+  - generalized force: {phi: T - k*phi_dot}
+motion: {theta: s, phi: {rate: T/k}}
+"""
+    lines = told(tmp_path, governor, "--problems", "6")
+    begun = "characteristic polynomial (a3 lambda^3 + a2 lambda^2 + a1 lambda + a0) lambda"
+    assert any(line.startswith(begun) for line in lines)
+    assert any(line.endswith("if a0 > 0, Hurwitz minor 2 > 0") for line in lines)
+
+
 def test_the_letters_of_conditions_are_explained_beside_them(tmp_path: Path) -> None:
     """Those in use, and those that they are made of; none that no condition holds; long ones where they are told."""
     text = (

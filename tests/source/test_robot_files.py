@@ -345,12 +345,52 @@ def test_what_is_misspelt_in_urdf_is_complained_about_with_a_guess(old: str, new
     assert found.hint == f"did you mean '{meant}'?"
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "what", "where"),
+    [
+        ("<inertial>", "<inertia/>\n<inertial>", "<inertia> stands in <link>", "<inertial>"),
+        ("</inertial>", "<limit/></inertial>", "<limit> stands in <inertial>", "<joint>"),
+        ("<axis ", '<limit>\n<mimic joint="j"/></limit><axis ', "<mimic> stands in <limit>", "<joint>"),
+        ("<axis ", '<origin>\n<axis xyz="1 0 0"/></origin><axis ', "<axis> stands in <origin>", "<joint>"),
+        ("<inertial>", "<visual>\n<inertial/></visual><inertial>", "<inertial> stands in <visual>", "<link>"),
+        ("</robot>", '<group>\n<link name="l"/></group></robot>', "<link> stands in <group>", "<robot>"),
+    ],
+)
+def test_what_stands_in_another_element_of_a_urdf_is_not_lost_in_silence(
+    old: str, new: str, what: str, where: str
+) -> None:
+    assert old in PENDULUM
+    complaints = Complaints()
+    assert convert(PENDULUM.replace(old, new, 1), complaints) is None
+    found = next(one for one in complaints.items if one.code == "misplaced-key")
+    assert found.message == f"{what}, where it is not read"
+    assert found.hint == f"it belongs into {where}"
+
+
+@pytest.mark.parametrize(
+    ("before", "body", "what"),
+    [
+        ("", f"<body><joint>{POINT}</joint></body>", "<inertial> stands in <joint>"),
+        ("", f"<joint/><body>{POINT}</body>", "<joint> stands in <worldbody>"),
+        ("", f"<body><joint/><geom size='1'>{POINT}</geom></body>", "<inertial> stands in <geom>"),
+        (f"<default>{POINT}</default>", BALL, "<inertial> stands in <default>"),
+        (f"<body>{POINT}</body>", BALL, "<body> stands in <mujoco>"),
+    ],
+)
+def test_what_stands_in_another_element_of_an_mjcf_is_not_lost_in_silence(before: str, body: str, what: str) -> None:
+    """MuJoCo refuses all of these but the last one, of which it loses a body."""
+    complaints = Complaints()
+    assert convert(mujoco(before, body), complaints) is None
+    assert f"{what}, where it is not read" in [one.message for one in complaints.items]
+
+
 def test_what_urdf_files_have_of_their_own_is_left_out_by_name() -> None:
-    """Both stand in files of robots that are sold; neither is a slip of the pen."""
-    text = PENDULUM.replace('<link name="world"/>', '<link name="world"><collision_checking/></link>')
+    """They stand in files of robots that are sold; none is a slip of the pen."""
+    text = PENDULUM.replace('<link name="world"/>', '<link name="world"><origin/><collision_checking/></link>')
     made = converted(text.replace("<dynamics ", '<dynamics gear_damping="2" '))
     assert "unknown element <collision_checking> in <link>" in made.left_out
     assert "unknown attribute 'gear_damping' of <dynamics>" in made.left_out
+    assert "place of a link (<origin> in <link>)" in made.left_out
 
 
 @pytest.mark.parametrize(
@@ -909,7 +949,8 @@ def test_coordinates_may_be_called_as_the_joints() -> None:
 
 
 def test_states_limits_and_actuators_that_have_no_place_are_listed_and_what_is_not_known_is_refused() -> None:
-    ball = '<body name="b"><joint name="j" type="ball" range="0 1"/><inertial pos="0 0 1" mass="1"/></body>'
+    inertial = '<inertial pos="0 0 1" mass="1" diaginertia="1 1 1"/>'
+    ball = f'<body name="b"><joint name="j" type="ball" range="0 1"/>{inertial}</body>'
     key = '<keyframe><key qpos="1 0 0 0"/></keyframe>'
     assert converted(mujoco("", ball, key)).left_out == ("limit of a ball joint", "state to begin in (<key>)")
     motor = '<actuator><motor joint="j" damping="1"/></actuator>'

@@ -290,8 +290,9 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
-        several = Message("[[count]] zero roots split off.", count=zero_power)
-        remarks.append(several if zero_power > 1 else Message("One zero root splits off."))
+        one = "One zero root splits off; conditions name the coefficients of the rest."
+        several = "[[count]] zero roots split off; conditions name the coefficients of the rest."
+        remarks.append(Message(several, count=zero_power) if zero_power > 1 else Message(one))
     theory = replace(
         start,
         removed=removed,

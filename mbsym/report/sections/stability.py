@@ -179,7 +179,7 @@ def content(results: Results) -> Iterator[Block]:
                 ".",
             )
     elif lacking := _without_numbers(results):
-        text = "At the given values of the parameters nothing is said of stability: $[[names]]$ have none."
+        text = "At the given values of the parameters nothing is said of stability: without a value is $[[names]]$."
         yield paragraph(say(text, names=named(lacking)))
     theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(stability))]
     cited = tuple((worded(name), keys) for name, keys in theorems if keys)

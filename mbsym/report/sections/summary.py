@@ -35,6 +35,7 @@ from mbsym.report.content import (
     Heading,
     Inline,
     Link,
+    Listed,
     Math,
     Name,
     Number,
@@ -289,11 +290,16 @@ def _coefficients(part: SubsystemStability, lines: Iterable[Inline], variable: s
         text = "[[letters]]: coefficients of factors of the characteristic polynomial ([[place]])"
         yield say(text, letters=tuple(dict.fromkeys(letters)), place=place)
         return
-    powers = (k for k in reversed(range(len(part.characteristic))) if not part.characteristic[k].is_zero)
-    rates = {0: (), 1: (Symbol(variable),)}
-    terms = ((Symbol(letters[0].letter, str(k)), *rates.get(k, (Power(Symbol(variable), k),))) for k in powers)
-    parts: list[Math | str] = [x for term in terms for x in ("+", *term)]
-    yield say("characteristic polynomial [[polynomial]] ([[place]])", polynomial=Relation(*parts[1:]), place=place)
+    zeros = part.theory.zero_power  # conditions call the coefficients of what is left without them
+
+    def rate(power: int) -> tuple[Math, ...]:
+        return (Symbol(variable),) if power == 1 else (Power(Symbol(variable), power),) if power else ()
+
+    powers = (k for k, x in reversed([*enumerate(part.characteristic[zeros:])]) if not x.is_zero)
+    parts: list[Math | str] = [x for k in powers for x in ("+", Symbol(letters[0].letter, str(k)), *rate(k))]
+    left = Relation(*parts[1:])
+    polynomial = Relation(Listed((left,), brackets=True), *rate(zeros)) if zeros else left
+    yield say("characteristic polynomial [[polynomial]] ([[place]])", polynomial=polynomial, place=place)
 
 
 def _meanings(lines: Iterable[Inline], system: System) -> Iterator[Inline]:

@@ -26,6 +26,7 @@ from mbsym.source.robots.geoms import (
     weighs,
 )
 from mbsym.source.robots.reader import (
+    NO_TENSOR,
     NOWHERE,
     Element,
     Reader,
@@ -101,18 +102,32 @@ _ATTRIBUTES = words_of(
     }
 )
 
-#: What may stand in a body.
-_ELEMENTS = "body inertial joint freejoint geom site camera light plugin composite flexcomp attach frame replicate"
+#: What may stand in the world and in bodies, and in bodies alone; what moves or weighs in frames is told elsewhere.
+_ELEMENTS = "body geom site camera light plugin composite flexcomp attach frame replicate"
+_OF_BODIES = "inertial joint freejoint"
 
 _SPELLING = Spelling(
     _ATTRIBUTES,
-    words_of(dict.fromkeys(("body", "worldbody", "frame"), _ELEMENTS)),
+    words_of(
+        {
+            "body": f"{_ELEMENTS} {_OF_BODIES}",
+            "frame": f"{_ELEMENTS} {_OF_BODIES}",
+            "worldbody": _ELEMENTS,
+            "default": "default joint geom site camera light pair equality tendon mesh material general motor position "
+            "velocity intvelocity damper cylinder muscle adhesion dcmotor plugin",
+            "equality": "connect weld joint tendon flex flexvert flexstrain distance",
+            "option": "flag",
+            "mujoco": "compiler option size visual statistic default custom extension asset worldbody contact "
+            "deformable equality tendon actuator sensor keyframe include",
+        }
+    ),
     words_of({"body": "inertial freejoint"}),
 )
 
 
 def _read(root: Element) -> Iterator[tuple[str, Element]]:
     """What is read: settings, default classes, bodies with what stands in them, and ties, each with its section."""
+    yield "", root
     for section in root.children:
         if section.tag in ("compiler", "option", "equality"):
             yield from ((section.tag, element) for element in section.walk())
@@ -518,6 +533,8 @@ class _Bodies:
             xx, yy, zz, xy, xz, yz = reader.numbers(element, "fullinertia", 6)
         elif element.get("diaginertia"):
             xx, yy, zz = reader.three(element, "diaginertia")
+        else:
+            reader.leave_out(NO_TENSOR)
         return Inertial(mass, place, turned, self.of_a_body((xx, xy, xz, yy, yz, zz), element))
 
     def of_a_body(self, tensor: Moments, element: Element) -> Moments:

@@ -137,8 +137,10 @@ _ALIKE = 0.75
 def check_spelling(elements: Iterator[tuple[str, Element]], spelling: Spelling, reader: Reader) -> None:
     """Complains about what looks like a slip of the pen, at its element; what looks like nothing known is left out.
 
-    The latter may be of a later version.  ``elements`` are those that are read, each with the name of its section.
+    The latter may be of a later version.  What is read in other elements only is an error where it would be lost.
+    ``elements`` are those that are read, each with the name of its section.
     """
+    read = spelling.attributes.keys() | spelling.elements.keys()
     for section, element in elements:
         tag = element.tag
         known = spelling.attributes.get(f"{section}/{tag}", spelling.attributes.get(tag, frozenset()))
@@ -146,8 +148,12 @@ def check_spelling(elements: Iterator[tuple[str, Element]], spelling: Spelling, 
             if name not in known and ":" not in name:
                 _tell(f"attribute {ascii_safe(name)} of <{tag}>", name, known, element, reader)
         inside = spelling.elements.get(tag, frozenset())
-        for child in element.children if inside else ():
-            if child.tag not in inside and ":" not in child.tag:
+        for child in element.children if tag in read else ():
+            places = [f"<{place}>" for place, known in spelling.elements.items() if child.tag in known]
+            if child.tag in read and places and child.tag not in inside:
+                what = f"<{child.tag}> stands in <{tag}>, where it is not read"
+                reader.error("misplaced-key", what, child, f"it belongs into {' or '.join(places)}")
+            elif inside and child.tag not in inside and ":" not in child.tag:
                 what = f"element <{ascii_safe(child.tag).strip(chr(39))}> in <{tag}>"
                 _tell(what, child.tag, inside, child, reader)
         for child_tag in sorted(spelling.once.get(tag, frozenset())):
@@ -173,6 +179,9 @@ def _tell(what: str, word: str, known: frozenset[str], element: Element, reader:
 
 Texts = tuple[str, str, str]
 NOWHERE: Texts = ("0", "0", "0")
+
+#: What is left out where a mass comes without moments.
+NO_TENSOR = "inertia that is not given (the link is a point mass)"
 
 #: Angles printed with fewer digits are not taken for a rounded part of pi: 0.5 is no pi/6.
 FEWEST_DIGITS = 4

@@ -15,6 +15,7 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.geoms import of_quaternion
 from mbsym.source.robots.reader import (
+    NO_TENSOR,
     Element,
     Reader,
     Spelling,
@@ -77,9 +78,11 @@ _SPELLING = Spelling(
     words_of(
         {
             "robot": f"link joint material group {' '.join(_LEFT_OUT)}",
-            "link": f"inertial visual collision self_collision_checking contact {' '.join(_LEFT_OUT)}",
+            "link": f"inertial visual collision self_collision_checking contact origin {' '.join(_LEFT_OUT)}",
             "joint": "origin parent child axis calibration dynamics limit mimic safety_controller",
             "inertial": "origin mass inertia",
+            "visual": "origin geometry material",
+            "group": "",
         }
     ),
     words_of(
@@ -96,6 +99,7 @@ _SPELLING = Spelling(
 def _read(root: Element) -> Iterator[tuple[str, Element]]:
     """The elements that say how a robot moves and looks, but for what is in those that are left out."""
     yield "", root
+    yield from (("", group) for group in root.all("group"))
     for body in (*root.all("link"), *root.all("joint")):
         yield "", body
         for part in body.children:
@@ -200,6 +204,8 @@ def _ordered(first: str, joints: dict[str, Element]) -> list[str]:
 
 def _link(name: str, element: Element, joint: Element | None, named: Mapping[str, Element], reader: Reader) -> Link:
     inertial = element.first("inertial")
+    if element.first("origin") is not None:  # some robots that are sold have one; URDF readers pass over it
+        reader.leave_out("place of a link (<origin> in <link>)")
     matter = () if inertial is None else (_inertial(inertial, reader),)
     shapes = tuple(shape for visual in element.all("visual") if (shape := _shape(visual, reader)) is not None)
     if joint is None:
@@ -300,7 +306,7 @@ def _inertial(element: Element, reader: Reader) -> Inertial:
     mass, tensor = element.first("mass"), element.first("inertia")
     centre, turned = _origin(element, reader)
     if tensor is None:
-        reader.leave_out("inertia that is not given (the link is a point mass)")
+        reader.leave_out(NO_TENSOR)
     xx, xy, xz, yy, yz, zz = ("0",) * 6 if tensor is None else (reader.number(tensor, part) for part in MOMENTS)
     if not is_nonnegative(*map(Fraction, (xx, xy, xz, yy, yz, zz))):
         reader.leave_out("tensor of inertia with which a kinetic energy could be negative")
