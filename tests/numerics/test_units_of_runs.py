@@ -22,10 +22,12 @@ from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.field import NotAnalytic
 from mbsym.numerics.ensembles import side_by_side
+from mbsym.numerics.ensembles.ensemble import OneByOne, WithParameters
+from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.events.switching import rates
 from mbsym.numerics.inverse import inverse_constrained
 from mbsym.numerics.methods import runge_kutta
-from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.interface import Cause, Setting
 from mbsym.numerics.methods.magnitudes import Magnitudes, about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.lyapunov import exponents
@@ -421,6 +423,52 @@ def test_rates_of_decay_and_oscillation_scale_with_the_time(name: str, units: tu
     other = rates(Dynamics(rescaled(given, units)))
     assert decay + frequency > 0.1
     assert [x * float(units[2]) for x in other] == pytest.approx([decay, frequency], rel=1e-5, abs=1e-6)
+
+
+FALL = """
+mbsym: 1
+name: {name}
+parameters: {{g: positive}}
+bodies: [{{name: mass, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}}]
+loads: [{{generalized force: {{x: {force}}}}}]
+values: {{g: {unit}}}
+initial: {{x: {start}}}
+"""
+
+
+@pytest.mark.parametrize("unit", [1, 10**6, 10**12], ids=str)
+def test_a_free_fall_is_no_blow_up_in_any_unit(unit: int) -> None:
+    """x = g t^2/2 from rest at 0, where nothing tells a size: alone and in ensembles."""
+    given = from_text(FALL.format(name="a free fall", force="g", unit=unit, start=0))
+    for method in ("dop853", "rk4"):
+        fixed = {"step": 100.0} if METHODS[method].traits.fixed else {}
+        found = run(given, 1000, method, estimate=False, **fixed).trajectory
+        assert found.breakdown is None
+        assert found.states[0, -1] == pytest.approx(unit * 5e5, rel=1e-12)
+        starts = np.zeros((2, 3))
+        made = side_by_side.compiled(Dynamics(given), side_by_side.TABLEAUX[method])
+        setting = Setting(1e-10, **fixed)
+        beside = side_by_side.SideBySide(made, setting, starts, np.zeros((0, 3)), threads=1)
+        each = OneByOne(WithParameters(Parametrised(given, ())), method, setting, starts, np.zeros((0, 3)))
+        for members in (beside, each):
+            assert members.block(np.array([500.0, 1000.0]))[-1, 0] == pytest.approx(unit * 5e5, rel=1e-12)
+            assert not members.fates
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12], ids=str)
+def test_what_runs_away_is_a_blow_up_in_every_unit(unit: float) -> None:
+    """x'' = 2 g (x/g)^3 from x = g, x' = g is g/(1 - t)."""
+    start = f"{{position: {unit!r}, velocity: {unit!r}}}"
+    given = from_text(FALL.format(name="an escape", force="2*g*(x/g)**3", unit=repr(unit), start=start))
+    for method in ("dop853", "taylor", "lsoda"):
+        ended = run(given, 2, method, estimate=False).trajectory.breakdown
+        assert ended is not None
+        assert (ended.kind, round(ended.time, 3)) == (Cause.BLOW_UP, 1)
+    made = side_by_side.compiled(Dynamics(given), side_by_side.TABLEAUX["dop853"])
+    starts = np.full((2, 3), unit)
+    members = side_by_side.SideBySide(made, Setting(1e-10), starts, np.zeros((0, 3)), threads=1)
+    members.block(np.array([2.0]))
+    assert {fate.kind for fate in members.fates.values()} == {Cause.BLOW_UP}
 
 
 def test_a_size_of_1_in_whatever_unit_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -325,8 +325,8 @@ class Sides:
     def _check_sliding(self, time: float, state: Any, sides: tuple[int, ...]) -> None:
         if sides.count(SLIDING) > 1:
             raise endless("two of its switches would have to hold at once", time, state)
-        sign, curvature = self._sign_there(self._dynamics.on_sides(sides), time, state)
-        if not abs(sign) <= 1 + 1e-9 or not abs(curvature) <= 1e-9 * max(1.0, abs(sign)):
+        sign, curved = self._sign_there(self._dynamics.on_sides(sides), time, state)
+        if not abs(sign) <= 1 + 1e-9 or not abs(curved) <= 1e-9:
             raise endless("no force between the two sides holds it there", time, state)
 
     @staticmethod
