@@ -312,6 +312,37 @@ def test_how_near_the_end_of_a_domain_is_depends_on_no_unit(unit: F, away: F, ne
     assert _undefined(Dynamics(given), 0.0, state, np.append(0.0, state)[:, None]) is near
 
 
+BELT = """
+mbsym: 1
+name: a block on a belt
+parameters: {L: positive}
+bodies: [{name: mass, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [{generalized force: {x: FORCE}}]
+values: {L: 1}
+initial: {x: 0}
+""".replace("FORCE", "-x - L*sign(x_dot - L/2)")
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
+def test_a_block_leaves_its_belt_at_the_same_time_in_all_units(unit: float) -> None:
+    """x'' = -x + L up to x' = L/2 at pi/6, carried along up to x = L, where friction is used up, and x'' = -x + L.
+
+    Friction that is not linear in the sign holds it in no unit.
+    """
+    text = BELT.replace("L: 1}", f"L: {unit!r}}}")
+    found = run(from_text(text), 12, estimate=False).trajectory
+    assert found.breakdown is None
+    t, first = found.times, np.pi / 6
+    begun = 1 - np.cos(first)
+    last = first + 2 * (1 - begun)
+    carried = np.where(t < last, begun + (t - first) / 2, 1 + np.sin(t - last) / 2)
+    assert found.states[0] / unit == pytest.approx(np.where(t < first, 1 - np.cos(t), carried), abs=1e-9)
+    bent = from_text(text.replace("L/2)", "L/2) - L*sign(x_dot - L/2)**2/5"))
+    ended = run(bent, 12, estimate=False).trajectory.breakdown
+    assert ended is not None
+    assert "no force between the two sides holds it there" in str(ended)
+
+
 # --- sizes ---
 
 

@@ -68,7 +68,9 @@ NOISE = 1e-12
 LARGEST = 1e12
 
 #: What is said then where the rates are not told.
-OUTGROWN = Message("a coordinate or velocity has grown beyond [[times]] times its size at the start", times=f"{LARGEST:.0e}")
+OUTGROWN = Message(
+    "a coordinate or velocity has grown beyond [[times]] times its size at the start", times=f"{LARGEST:.0e}"
+)
 
 #: Nor for less than short floats can divide by.
 SMALLEST = 1e-30
