@@ -236,7 +236,7 @@ def followed(
     initial = np.array([float(x) for x in dynamics.scenario.state])
     known = initial[:, None] if before is None else before
     done = known.shape[1]
-    begin = float(times[done - 1])
+    begin, start = float(times[done - 1]), np.append(float(times[0]), known[:, 0].astype(float))
     started = time.perf_counter()
     try:
         first = known[:, -1]
@@ -253,6 +253,9 @@ def followed(
         meter = Meter(dynamics)
         meter.start(((run, method.traits.name, scalar),))
         for more in chunks(run, times, meter, done, most):
+            escaped = _escaped(dynamics, start, times[rows.count : rows.count + more.shape[1]], more)
+            if escaped is not None:
+                raise escaped
             rows.keep(times[rows.count : rows.count + more.shape[1]], more)
             watch(float(times[rows.count - 1]))
     except Breakdown as trouble:
@@ -266,6 +269,9 @@ def followed(
 def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: Any) -> Breakdown:
     """Keeps the rows before a breakdown, and says what it is."""
     try:
+        if trouble.filled is not None and trouble.filled.shape[1]:
+            at = times[rows.count : rows.count + trouble.filled.shape[1]]
+            trouble = _escaped(dynamics, rows.past()[:, 0], at, trouble.filled) or trouble
         if trouble.filled is not None:
             rows.keep(times[rows.count : rows.count + trouble.filled.shape[1]], trouble.filled)
         past = rows.past()
@@ -316,6 +322,20 @@ def _checked(rows: Any, times: Any) -> None:
     raise Breakdown(Cause.BLOW_UP, message, times[first], state, rows[:, :first])
 
 
+def _escaped(dynamics: Dynamics, first: Any, times: Any, rows: Any) -> Breakdown | None:
+    """What is wrong where the last row has passed an escape: 10^12 of the sizes, and as much again in no time.
+
+    What an exponential makes of a size in the whole time has a rate of some hundred of it at most.
+    """
+    last, begin = rows[:, -1].astype(float), float(first[0])
+    with np.errstate(all="ignore"):
+        rates = np.abs(compiled_kernel(dynamics, "right_hand_side")(np.concatenate(([float(times[-1])], last))))
+        sudden = bool(np.any(np.abs(last) < ESCAPING * (float(times[-1]) - begin) * rates))
+    if not sudden or not about(dynamics, begin, first[1:].astype(float)).outgrown(last, 0.0):
+        return None
+    return Breakdown(Cause.BLOW_UP, OUTGROWN, times[-1], last, rows[:, :-1])
+
+
 def _cut(run: Integrated, first: int) -> Integrated:
     """What is left of a run whose energy has no value from a sample on: it went where the model says nothing."""
     message = "the energy is no real number from here on: a root or a logarithm has left its domain"
@@ -360,6 +380,9 @@ def allowed_apart(kinetic: float, largest: float) -> float:
 
 # Where a run cannot begin, and what its end is called: bounds, singular mass matrices, rates that do not exist.
 
+
+#: Where a value grows as much again in less than this part of the time, it escapes in finite time.
+ESCAPING = 1e-6
 
 #: No initial state is beyond this: the world measures 1e36 nanometres.
 LARGEST_START = 1e40
