@@ -17,7 +17,7 @@ from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.methods.interface import (
-    LARGEST,
+    BEYOND,
     Breakdown,
     Cause,
     Method,
@@ -28,8 +28,9 @@ from mbsym.numerics.methods.interface import (
     compiled_kernel,
     met_by,
     up_to,
+    within_bound,
 )
-from mbsym.numerics.methods.magnitudes import about
+from mbsym.numerics.methods.magnitudes import OUTGROWN, about
 from mbsym.numerics.planning.prices import Meter
 from mbsym.numerics.states import StateDynamics
 
@@ -235,7 +236,7 @@ def followed(
     initial = np.array([float(x) for x in dynamics.scenario.state])
     known = initial[:, None] if before is None else before
     done = known.shape[1]
-    begin = float(times[done - 1])
+    begin, start = float(times[done - 1]), np.append(float(times[0]), known[:, 0].astype(float))
     started = time.perf_counter()
     try:
         first = known[:, -1]
@@ -251,7 +252,10 @@ def followed(
         started = time.perf_counter()
         meter = Meter(dynamics)
         meter.start(((run, method.traits.name, scalar),))
-        for more in chunks(run, times, bound_of(initial), meter, done, most):
+        for more in chunks(run, times, meter, done, most):
+            escaped = _escaped(dynamics, start, times[rows.count : rows.count + more.shape[1]], more)
+            if escaped is not None:
+                raise escaped
             rows.keep(times[rows.count : rows.count + more.shape[1]], more)
             watch(float(times[rows.count - 1]))
     except Breakdown as trouble:
@@ -265,6 +269,9 @@ def followed(
 def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: Any) -> Breakdown:
     """Keeps the rows before a breakdown, and says what it is."""
     try:
+        if trouble.filled is not None and trouble.filled.shape[1]:
+            at = times[rows.count : rows.count + trouble.filled.shape[1]]
+            trouble = _escaped(dynamics, rows.past()[:, 0], at, trouble.filled) or trouble
         if trouble.filled is not None:
             rows.keep(times[rows.count : rows.count + trouble.filled.shape[1]], trouble.filled)
         past = rows.past()
@@ -281,10 +288,10 @@ def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: An
     return last_rows
 
 
-def chunks(run: Run, times: Any, bound: float, meter: Meter, done: int = 0, most: int = MOST_AT_ONCE) -> Iterator[Any]:
+def chunks(run: Run, times: Any, meter: Meter, done: int = 0, most: int = MOST_AT_ONCE) -> Iterator[Any]:
     """The states (2n, m) at ``times`` from number ``done``, as many at once as cost about ``CHUNK``.
 
-    Raises Breakdown, with the rows since the last chunk, where the run cannot go on or a row is beyond ``bound``.
+    Raises Breakdown, with the rows since the last chunk, where the run cannot go on or a row is beyond the bound.
     """
     count = 1
     while done < len(times):
@@ -293,27 +300,40 @@ def chunks(run: Run, times: Any, bound: float, meter: Meter, done: int = 0, most
         try:
             rows = run.fill(at)
         except Breakdown as breakdown:
-            _checked(breakdown.filled, at, bound)
+            _checked(breakdown.filled, at)
             raise
-        _checked(rows, at, bound)
+        _checked(rows, at)
         yield rows
         done += len(at)
         spent = meter.spent - before
         count = min(most, 4 * count) if spent < CHUNK / 4 else max(1, count // 2) if spent > CHUNK else count
 
 
-def _checked(rows: Any, times: Any, bound: float) -> None:
+def _checked(rows: Any, times: Any) -> None:
     """Raises Breakdown at the first row that is beyond the bound, or no number."""
-    with np.errstate(all="ignore"):
-        fine = np.all(np.abs(rows) < bound, axis=0)
+    fine = within_bound(rows)
     if np.all(fine):
         return
     first = int(np.argmin(fine))
     state = rows[:, first]
-    message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
+    message = BEYOND if np.all(np.isfinite(state)) else Message("a value is no longer finite")
     if np.any(np.isnan(state)):
         message = Message("a coordinate or velocity is not a number")
     raise Breakdown(Cause.BLOW_UP, message, times[first], state, rows[:, :first])
+
+
+def _escaped(dynamics: Dynamics, first: Any, times: Any, rows: Any) -> Breakdown | None:
+    """What is wrong where the last row has passed an escape: 10^12 of the sizes, and as much again in no time.
+
+    What an exponential makes of a size in the whole time has a rate of some hundred of it at most.
+    """
+    last, begin = rows[:, -1].astype(float), float(first[0])
+    with np.errstate(all="ignore"):
+        rates = np.abs(compiled_kernel(dynamics, "right_hand_side")(np.concatenate(([float(times[-1])], last))))
+        sudden = bool(np.any(np.abs(last) < ESCAPING * (float(times[-1]) - begin) * rates))
+    if not sudden or not about(dynamics, begin, first[1:].astype(float)).outgrown(last, 0.0):
+        return None
+    return Breakdown(Cause.BLOW_UP, OUTGROWN, times[-1], last, rows[:, :-1])
 
 
 def _cut(run: Integrated, first: int) -> Integrated:
@@ -361,8 +381,11 @@ def allowed_apart(kinetic: float, largest: float) -> float:
 # Where a run cannot begin, and what its end is called: bounds, singular mass matrices, rates that do not exist.
 
 
-#: No initial state is beyond this: the world measures 1e27 metres.
-LARGEST_START = 1e30
+#: Where a value grows as much again in less than this part of the time, it escapes in finite time.
+ESCAPING = 1e-6
+
+#: No initial state is beyond this: the world measures 1e36 nanometres.
+LARGEST_START = 1e40
 
 #: A pivot of M that has become so much smaller than it was means that M is singular for practical purposes.
 SINGULAR_PIVOT = 1e-11
@@ -379,11 +402,6 @@ AHEAD = (1e-12, 1e-9, 1e-6, 1e-3, 3e-2)
 
 #: How much later, as parts of the time so far, positions that keep moving constraints are looked for.
 LATER = (1e-4, 1e-3, 1e-2)
-
-
-def bound_of(initial: Any) -> float:
-    """Where a run is ended: sizes of 1e12, and as many times those of the initial state (orbits in metres)."""
-    return LARGEST * max(1.0, float(np.max(np.abs(initial), initial=0.0)))
 
 
 def wrong_at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Breakdown | None:
@@ -456,10 +474,8 @@ def diagnosed(dynamics: Dynamics, breakdown: Breakdown, past: Any) -> Breakdown:
     if _undefined(dynamics, breakdown.time, state, past):
         message = "the equations have no real value beyond this state: a root or a logarithm leaves its domain"
         return Breakdown(Cause.UNDEFINED, message, breakdown.time, breakdown.state)
-    bound = bound_of(past[1:, 0])
-    if not np.all(np.abs(state) < bound):
-        message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
-        return Breakdown(Cause.BLOW_UP, message, breakdown.time, breakdown.state)
+    if breakdown.kind == Cause.STUCK and about(dynamics, past[0, 0], past[1:, 0]).outgrown(state, 0.0):
+        return Breakdown(Cause.BLOW_UP, OUTGROWN, breakdown.time, breakdown.state)
     return breakdown
 
 
@@ -484,7 +500,7 @@ def _undefined(dynamics: Dynamics, t: float, state: Any, past: Any) -> bool:
         if np.any(np.isnan(rates)):
             return True
         moving = np.abs(rates) > 0
-        if not np.any(moving) or not np.max(np.abs(rates)) < LARGEST:
+        if not np.any(moving) or about(dynamics, past[0, 0], past[1:, 0]).outgrown(0.0 * state, rates):
             return False
         sizes = np.maximum(about(dynamics, t, state).sizes[:, 0], np.max(np.abs(past[1:]), axis=1))
         steps = np.array(AHEAD) * float(np.min(sizes[moving] / np.abs(rates[moving])))

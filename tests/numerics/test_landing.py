@@ -211,7 +211,7 @@ def test_a_kernel_of_signs_is_what_the_text_says() -> None:
 
 
 def test_a_dropped_switch_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Leaving, "first", lambda self, piece: (piece.end, ()))
+    monkeypatch.setattr(Leaving, "first", lambda self, piece, sides: (piece.end, ()))
     for case in ("a push of 2 ms", "bang-bang", "dry friction"):
         with pytest.raises(Breakdown, match="a switch was missed"):
             run_of("dop853", CASES[case][0]).advance(10.0)

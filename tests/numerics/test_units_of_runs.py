@@ -23,10 +23,12 @@ from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.field import NotAnalytic
 from mbsym.numerics.ensembles import side_by_side
+from mbsym.numerics.ensembles.ensemble import OneByOne, WithParameters
+from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.events.switching import rates
 from mbsym.numerics.inverse import inverse_constrained
 from mbsym.numerics.methods import runge_kutta
-from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.interface import Cause, Setting
 from mbsym.numerics.methods.magnitudes import Magnitudes, about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.lyapunov import exponents
@@ -306,6 +308,37 @@ def test_how_near_the_end_of_a_domain_is_depends_on_no_unit(unit: F, away: F, ne
     assert _undefined(Dynamics(given), 0.0, state, np.append(0.0, state)[:, None]) is near
 
 
+BELT = """
+mbsym: 1
+name: a block on a belt
+parameters: {L: positive}
+bodies: [{name: mass, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [{generalized force: {x: FORCE}}]
+values: {L: 1}
+initial: {x: 0}
+""".replace("FORCE", "-x - L*sign(x_dot - L/2)")
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
+def test_a_block_leaves_its_belt_at_the_same_time_in_all_units(unit: float) -> None:
+    """x'' = -x + L up to x' = L/2 at pi/6, carried along up to x = L, where friction is used up, and x'' = -x + L.
+
+    Friction that is not linear in the sign holds it in no unit.
+    """
+    text = BELT.replace("L: 1}", f"L: {unit!r}}}")
+    found = run(from_text(text), 12, estimate=False).trajectory
+    assert found.breakdown is None
+    t, first = found.times, np.pi / 6
+    begun = 1 - np.cos(first)
+    last = first + 2 * (1 - begun)
+    carried = np.where(t < last, begun + (t - first) / 2, 1 + np.sin(t - last) / 2)
+    assert found.states[0] / unit == pytest.approx(np.where(t < first, 1 - np.cos(t), carried), abs=1e-9)
+    bent = from_text(text.replace("L/2)", "L/2) - L*sign(x_dot - L/2)**2/5"))
+    ended = run(bent, 12, estimate=False).trajectory.breakdown
+    assert ended is not None
+    assert "no force between the two sides holds it there" in str(ended)
+
+
 # --- sizes ---
 
 
@@ -416,6 +449,55 @@ def test_rates_of_decay_and_oscillation_scale_with_the_time(name: str, units: tu
     other = rates(Dynamics(rescaled(given, units)))
     assert decay + frequency > 0.1
     assert [x * float(units[2]) for x in other] == pytest.approx([decay, frequency], rel=1e-5, abs=1e-6)
+
+
+FALL = """
+mbsym: 1
+name: {name}
+parameters: {{g: positive}}
+bodies: [{{name: mass, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}}]
+loads: [{{generalized force: {{x: {force}}}}}]
+values: {{g: {unit}}}
+initial: {{x: {start}}}
+"""
+
+
+@pytest.mark.parametrize("unit", [1, 10**6, 10**12], ids=str)
+def test_a_free_fall_is_no_blow_up_in_any_unit(unit: int) -> None:
+    """x = g t^2/2 from rest at 0, where nothing tells a size: alone and in ensembles."""
+    given = from_text(FALL.format(name="a free fall", force="g", unit=unit, start=0))
+    for method in ("dop853", "rk4"):
+        fixed = {"step": 100.0} if METHODS[method].traits.fixed else {}
+        found = run(given, 1000, method, estimate=False, **fixed).trajectory
+        assert found.breakdown is None
+        assert found.states[0, -1] == pytest.approx(unit * 5e5, rel=1e-12)
+        starts = np.zeros((2, 3))
+        made = side_by_side.compiled(Dynamics(given), side_by_side.TABLEAUX[method])
+        setting = Setting(1e-10, **fixed)
+        beside = side_by_side.SideBySide(made, setting, starts, np.zeros((0, 3)), threads=1)
+        each = OneByOne(WithParameters(Parametrised(given, ())), method, setting, starts, np.zeros((0, 3)))
+        for members in (beside, each):
+            assert members.block(np.array([500.0, 1000.0]))[-1, 0] == pytest.approx(unit * 5e5, rel=1e-12)
+            assert not members.fates
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12], ids=str)
+def test_what_runs_away_is_a_blow_up_in_every_unit(unit: float) -> None:
+    """x'' = 2 g (x/g)^3 from x = g, x' = g is g/(1 - t); there is no row at t = 1."""
+    start = f"{{position: {unit!r}, velocity: {unit!r}}}"
+    given = from_text(FALL.format(name="an escape", force="2*g*(x/g)**3", unit=repr(unit), start=start))
+    for method in ("dop853", "taylor", "lsoda"):
+        found = run(given, 2, method, estimate=False).trajectory
+        ended, before = found.breakdown, found.times < 0.99
+        assert ended is not None
+        assert (ended.kind, round(ended.time, 3)) == (Cause.BLOW_UP, 1)
+        assert found.times[-1] < 1
+        assert found.states[0, before] / unit == pytest.approx(1 / (1 - found.times[before]), rel=1e-6)
+    made = side_by_side.compiled(Dynamics(given), side_by_side.TABLEAUX["dop853"])
+    starts = np.full((2, 3), unit)
+    members = side_by_side.SideBySide(made, Setting(1e-10), starts, np.zeros((0, 3)), threads=1)
+    members.block(np.array([2.0]))
+    assert {fate.kind for fate in members.fates.values()} == {Cause.BLOW_UP}
 
 
 def test_a_size_of_1_in_whatever_unit_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,7 +23,7 @@ from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.ensembles.side_by_side import TABLEAUX, Fate, SideBySide, compiled
 from mbsym.numerics.ensembles.variation import Members
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import LARGEST, Breakdown, Cause, Narrow, Run, Setting, met_by
+from mbsym.numerics.methods.interface import Breakdown, Cause, Narrow, Run, Setting, met_by, within_bound
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
@@ -306,7 +306,6 @@ class OneByOne:
         self._size, self.members = starts.shape
         self._states = np.vstack([starts, parameters]).astype(float)
         self._runs: list[Run | None] = [None] * self.members
-        self._bound = LARGEST * np.maximum(1.0, np.max(np.abs(starts), axis=0, initial=0.0))
         self.fates: dict[int, Fate] = {}
 
     @property
@@ -351,8 +350,7 @@ class OneByOne:
         except Breakdown as ended:
             self.fates[member] = Fate(member, ended.kind, float(ended.time))
             rows = np.empty((len(self._states), 0)) if ended.filled is None else ended.filled
-        with np.errstate(invalid="ignore"):
-            fine = np.all(np.abs(rows[: self._size]) < self._bound[member], axis=0)
+        fine = within_bound(rows[: self._size])
         if np.all(fine):
             return rows
         first = int(np.argmin(fine))

@@ -34,7 +34,7 @@ from mbsym.numerics.ensembles.ensemble_text import (
 )
 from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.llvm import Library, kernel
-from mbsym.numerics.methods.interface import LARGEST, Cause, Setting
+from mbsym.numerics.methods.interface import Cause, Setting, within_bound
 from mbsym.numerics.methods.magnitudes import Magnitudes, Variables, first_steps, magnitudes, variables
 from mbsym.numerics.methods.runge_kutta import OPERATIONS_AT_A_TIME
 from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau, address, aligned
@@ -113,7 +113,6 @@ class SideBySide:
         if made.parameters:
             self.p[:] = _grouped(np.asarray(parameters, float)[:, padded], lanes)
         self.threads = max(1, min(threads or len(os.sched_getaffinity(0)), self.groups))
-        self.bound = LARGEST * np.maximum(1.0, np.max(np.abs(starts), axis=0, initial=0.0))
         self.fates: dict[int, Fate] = {}
         self.time = 0.0
         self.evaluations = 0
@@ -144,7 +143,7 @@ class SideBySide:
             return rhs(np.vstack([times, states, parameters]))
 
         begin = np.zeros(starts.shape[1])
-        known = self._magnitudes(rhs, begin, starts, parameters)
+        known = self._known = self._magnitudes(rhs, begin, starts, parameters)
         self.sizes = aligned(shape, float)
         floor = known.floor(tolerance, float(np.finfo(float).eps))
         self.sizes[:] = _grouped(np.maximum(np.abs(starts), floor), made.lanes)
@@ -275,8 +274,7 @@ class SideBySide:
 
     def _bury(self, times: Any, states: Any) -> None:
         """Members that are no numbers, or beyond all bounds, are ended there, and said to be."""
-        with np.errstate(invalid="ignore"):
-            lost = ~np.all(np.abs(states) < self.bound, axis=1)
+        lost = ~within_bound(np.swapaxes(states, 0, 1))
         ended = np.flatnonzero(lost[-1] | np.any(lost, axis=0))
         for member in ended:
             first = int(np.argmax(lost[:, member]))
@@ -291,10 +289,9 @@ class SideBySide:
             self.x[group, :, lane] = np.nan
             return Fate(member, Cause.BLOW_UP, when)
         clock = self.clock[group, :, lane]
-        size = float(np.max(np.abs(self.x[group, :, lane])))
-        steep = float(np.max(np.abs(self.k[group, : self.made.size, lane])))
+        last, slopes = self.x[group, :, lane], self.k[group, : self.made.size, lane]
         kind = Cause.STEP_LIMIT if clock[Clock.DEAD] == 3 else Cause.STUCK
-        if kind == Cause.STUCK and (clock[Clock.INFINITE] or not size < LARGEST or not steep < LARGEST):
+        if kind == Cause.STUCK and (clock[Clock.INFINITE] or self._known.outgrown(last, slopes, member)):
             kind = Cause.BLOW_UP
         if clock[Clock.DEAD]:
             when = min(when, max(float(clock[0]), 0.0))

@@ -140,7 +140,9 @@ def held(code: Code, standing_for: Standing) -> tuple[Node, ...]:
 
 
 def sign_that_holds(rates: Code, sliding: Node, others: Standing) -> Code:
-    """(t, q, q') -> s and g'(-1) - 2 g'(0) + g'(1), where the one ``sliding`` switch g stays 0 with s for its sign,
+    """(t, q, q') -> s and (g'(-1) - 2 g'(0) + g'(1))/(g'(1) - g'(-1)), where the one ``sliding`` switch g stays 0,
+
+    with s for its sign,
 
         g' = g_t + g_x . x' = a + b s = 0,    s = -a/b,
 
@@ -160,5 +162,8 @@ def sign_that_holds(rates: Code, sliding: Node, others: Standing) -> Code:
 
     below, at, above = rate(-1), rate(0), rate(1)
     two = program.number(2)
-    sign = program.divide(program.minus(program.product(two, at)), above - below)
-    return Code(program, rates.inputs, (sign, below + above - program.product(two, at)))
+    sign, curved = (
+        program.divide(part, above - below)
+        for part in (program.minus(program.product(two, at)), below + above - program.product(two, at))
+    )
+    return Code(program, rates.inputs, (sign, curved))

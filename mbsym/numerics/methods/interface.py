@@ -25,8 +25,17 @@ from mbsym.numerics.scenario import Scenario
 #: The finest tolerances that compiled methods take: some roundings.
 FINEST = {FLOAT32: 5e-7, FLOAT64: 1e-15, EXTENDED: 5e-19}
 
-#: Where a step vanishes, rates beyond this mean a blow-up.
-LARGEST = 1e12
+#: Whatever the unit, no value is followed beyond this: what energies and deviations square is no number soon after.
+BOUND = 1e150
+
+#: No error: a value that grew beyond the bound.
+BEYOND = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{BOUND:g}")
+
+
+def within_bound(states: Any) -> Any:
+    """Which states (d, ...) are within the bound, shape (...); numbers they are then, too."""
+    with np.errstate(invalid="ignore"):
+        return np.all(np.abs(states) < BOUND, axis=0)
 
 
 class Cause(StrEnum):

@@ -368,7 +368,7 @@ class LandingRun:
             self._windows.append(window)
             self._go_back(start, state)
         assert self._sides is not None
-        place, turned = self._leaving.first(piece)
+        place, turned = self._leaving.first(piece, self._sides)
         return piece, place, turned
 
     def _bound(self, until: float | None) -> float:
@@ -490,24 +490,25 @@ class LandingRun:
 
     def _check_sides(self, piece: Piece) -> None:
         """A step that ends on another side than it was made for has missed a switch: nothing may hide that."""
-        if not self._switches.looked_for or self._ahead is None:
+        if not self._switches.looked_for or self._ahead is None or self._sides is None:
             return
         state = np.asarray(self._ahead.state, dtype=float)
         point = np.concatenate(([piece.end], state))[:, None]
         values, sizes = self._positive(point)[:, 0], np.abs(self._switches.at(piece.end, state))
         middle = along(self._positive, piece, piece.start, piece.end)
-        allowed = 1e-6 * (np.max(np.abs(middle), axis=1) + sizes + 1e-3 * self._switches.sizes)
+        usual = self._switches.sizes_on(self._sides)
+        allowed = 1e-6 * (np.max(np.abs(middle), axis=1) + sizes + 1e-3 * usual)
         if np.any(values < -allowed):
             raise endless("a switch was missed", piece.end, state)
 
     def _check_landing(self, piece: Piece, state: Any, turned: tuple[int, ...]) -> None:
         """A step to a switch has to end at it, as far as its tolerance lets it."""
+        assert self._sides is not None
         state = np.array(state, dtype=float)
         sizes = np.max(np.abs(along(self._positive, piece, piece.start, piece.end)), axis=1)
         left = np.abs(self._positive(np.concatenate(([piece.end], state))[:, None])[:, 0])
         part = max(1e-5, 10 * (self._setting.tolerance or 0.0))
-        sliding = np.array(self._sides) == SLIDING
-        sizes = part * sizes + 1e-7 * np.where(sliding, 1.0, self._switches.sizes)
+        sizes = part * sizes + 1e-7 * self._switches.sizes_on(self._sides)
         if np.any(left[list(turned)] > sizes[list(turned)]):
             raise endless("a switch is not where it should be", piece.end, state)
 

@@ -14,7 +14,7 @@ import numpy as np
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
-from mbsym.numerics.methods.interface import LARGEST, Breakdown, Cause, Setting, Traits, Unusable, Work, compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Cause, Setting, Traits, Unusable, Work, compiled_kernel
 from mbsym.numerics.methods.led import lead, nearly_singular, refuse
 from mbsym.numerics.methods.magnitudes import counted, first_steps, magnitudes, variables
 from mbsym.numerics.methods.stepping import Stepping
@@ -130,7 +130,7 @@ class LibraryRun(Stepping):
         message = self._guarded(solver.step)
         self.work.steps += 1
         failed = solver.status == "failed"
-        if not np.all(np.isfinite(solver.y)) or (failed and not np.all(np.abs(state) < LARGEST)):
+        if not np.all(np.isfinite(solver.y)) or (failed and self._magnitudes.outgrown(state, 0.0)):
             raise Breakdown(Cause.BLOW_UP, "a value is no longer finite", time, state)
         if failed or not solver.t > time:
             raise Breakdown(Cause.STUCK, str(message or "the time no longer advances"), time, state)

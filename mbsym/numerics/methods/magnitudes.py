@@ -34,6 +34,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
+from mbsym.expressions.message import Message
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.states import described
 from mbsym.numerics.dynamics import Dynamics
@@ -62,6 +63,14 @@ FARTHEST = 100.0
 
 #: What is a smaller part of the largest, weighed by masses, is a rounding.
 NOISE = 1e-12
+
+#: Where a step vanishes, values or rates beyond so many sizes mean a blow-up.
+LARGEST = 1e12
+
+#: What is said then where the rates are not told.
+OUTGROWN = Message(
+    "a coordinate or velocity has grown beyond [[times]] times its size at the start", times=f"{LARGEST:.0e}"
+)
 
 #: Nor for less than short floats can divide by.
 SMALLEST = 1e-30
@@ -155,6 +164,12 @@ class Magnitudes:
     times: Any
     natural: Any
     roundings: Any = ROUNDINGS
+
+    def outgrown(self, state: Any, slopes: Any, member: int = 0) -> bool:
+        """Whether a state (d,) or its rates (d,) are blown up: 10^12 of the sizes, or no numbers."""
+        usual, unit = self.sizes[:, member], float(self.times[member])
+        grown = np.max(np.abs(state) / usual, initial=0.0), np.max(np.abs(slopes) / usual, initial=0.0) * unit
+        return not all(part < LARGEST for part in grown)
 
     def floor(self, tolerance: float, precision: float) -> Any:
         """The least L (d, m) for a tolerance in an arithmetic whose next number after 1 is 1 + ``precision``."""

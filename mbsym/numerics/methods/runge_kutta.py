@@ -24,7 +24,6 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS, Library, Scalar, available, compiled
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value, clock_kind
 from mbsym.numerics.methods.interface import (
-    LARGEST,
     Breakdown,
     Cause,
     Setting,
@@ -557,11 +556,8 @@ class AdaptiveRun(CompiledRun):
         self.count[Count.PREPARED] = self.count[Count.STEPS]
 
     def _stopped(self) -> Breakdown:
-        usual, unit = self._magnitudes.sizes[:, 0], float(self._magnitudes.times[0])
         slopes = np.abs(self.k[self.tableau.begin])
-        size = float(np.max(np.abs(self.x) / usual, initial=0.0))
-        steep = float(np.max(slopes / usual, initial=0.0)) * unit
-        if not size < LARGEST or not steep < LARGEST:
+        if self._magnitudes.outgrown(self.x, slopes):
             fastest = float(np.max(slopes, initial=0.0))
             text = "values or rates grow too large to go on (largest rate [[rate]])"
             message = Message(text, rate=f"{fastest:.2g}")

@@ -201,9 +201,9 @@ class Sides:
         largest = np.max(np.where(np.isfinite(changes), changes, 0.0), axis=1, initial=0.0)
         self.sizes = np.where(largest > 0, largest, 1.0)
 
-    def size(self, k: int, side: int | None = None) -> float:
-        """That of one g; of what holds a sliding one it is 1."""
-        return 1.0 if side == SLIDING else float(self.sizes[k])
+    def sizes_on(self, sides: tuple[int, ...]) -> Any:
+        """The sizes of what is positive on these sides, shape (count,): that of g, of what holds a sliding one 1."""
+        return np.where(np.array(sides) == SLIDING, 1.0, self.sizes)
 
     def at(self, time: float, state: Any) -> Any:
         """All g and x in a state."""
@@ -288,7 +288,7 @@ class Sides:
         return self._piece(k, value) or (0 if self._at_border(k, value) else int(np.sign(value)))
 
     def _at_border(self, k: int, value: float) -> bool:
-        knots, blur = self._knots[k], BLUR * (self.size(k) + abs(value))
+        knots, blur = self._knots[k], BLUR * (self.sizes[k] + abs(value))
         if knots is None:
             return abs(value) <= blur
         return k not in self.by_clock and float(np.min(np.abs(knots - value))) <= blur
@@ -311,7 +311,7 @@ class Sides:
         frozen = self._dynamics.on_sides(tuple(side or 1 for side in sides) if sides.count(0) > 1 else sides)
         rates = compiled_kernel(frozen, "right_hand_side")(np.concatenate(([time], state)))
         begun, reach = self.at(time, state)[k], 1e-6 * self.time
-        scale = abs(begun) + self.size(k) * (1.0 + abs(time) / self.time)  # the time is rounded, too
+        scale = abs(begun) + self.sizes[k] * (1.0 + abs(time) / self.time)  # the time is rounded, too
         # A Taylor step of third order: g may begin to move by its second derivative only.
         for length in (reach, 1e3 * reach):
             later = state + length * rates
@@ -325,8 +325,8 @@ class Sides:
     def _check_sliding(self, time: float, state: Any, sides: tuple[int, ...]) -> None:
         if sides.count(SLIDING) > 1:
             raise endless("two of its switches would have to hold at once", time, state)
-        sign, curvature = self._sign_there(self._dynamics.on_sides(sides), time, state)
-        if not abs(sign) <= 1 + 1e-9 or not abs(curvature) <= 1e-9 * max(1.0, abs(sign)):
+        sign, curved = self._sign_there(self._dynamics.on_sides(sides), time, state)
+        if not abs(sign) <= 1 + 1e-9 or not abs(curved) <= 1e-9:
             raise endless("no force between the two sides holds it there", time, state)
 
     @staticmethod
@@ -346,7 +346,7 @@ class Sides:
                 end = float(curve.knots[0] if side == 1 else curve.knots[-1])
                 text = "the table [[name]] begins at [[end]]" if side == 1 else "the table [[name]] ends at [[end]]"
                 message = Message(text, name=curve.table.name, end=f"{end:.9g}")
-                if abs(value - end) > 1e-9 * (self.size(k) + abs(end)):
+                if abs(value - end) > 1e-9 * (self.sizes[k] + abs(end)):
                     argument = Message("its argument is [[value]]", value=f"{value:.9g}")
                     message = joined([message, argument], ", ")
                 raise Breakdown(OUTSIDE, message, time, state)
@@ -380,15 +380,15 @@ class Leaving:
         self._values, self._switches, self._tolerance, self._passed = values, switches, tolerance, passed
         self._looked_for = switches.looked_for
 
-    def first(self, piece: Piece) -> tuple[float, tuple[int, ...]]:
+    def first(self, piece: Piece, sides: tuple[int, ...]) -> tuple[float, tuple[int, ...]]:
         """The first time at which switches leave their sides in a piece, and which do so then; (end, ()) if none."""
         if not self._looked_for or piece.end - piece.start <= self._switches.together(piece.end):
             return piece.end, ()
         leaving: list[tuple[float, int]] = []
-        whole = along(self._values, piece, piece.start, piece.end)
+        whole, sizes = along(self._values, piece, piece.start, piece.end), self._switches.sizes_on(sides)
         for k in self._looked_for:
             beside = min(float(whole[k][0]), 0.0)  # a step to a switch ends beside it, by its own error
-            place = self._left(k, piece, (piece.start, piece.end), whole[k], beside, DEPTH)
+            place = self._left(k, piece, (piece.start, piece.end), whole[k], beside, float(sizes[k]), DEPTH)
             if place is not None:
                 leaving.append((place, k))
         if not leaving:
@@ -398,9 +398,9 @@ class Leaving:
         return first, tuple(k for place, k in leaving if place <= first + together)
 
     def _left(
-        self, k: int, piece: Piece, span: tuple[float, float], values: Any, beside: float, depth: int
+        self, k: int, piece: Piece, span: tuple[float, float], values: Any, beside: float, usual: float, depth: int
     ) -> float | None:
-        """Where a function becomes negative that begins positive, or at 0 but for so much ``beside`` it."""
+        """Where a function of a ``usual`` size becomes negative that begins positive, or 0 but for ``beside``."""
         if not np.all(np.isfinite(values)):
             return None
         start, end = span
@@ -415,15 +415,14 @@ class Leaving:
         if not resolved(known, rounding) and depth > 0:
             middle = 0.5 * (start + end)
             for half in ((start, middle), (middle, end)):
-                place = self._left(k, piece, half, along(self._values, piece, *half)[k], beside, depth - 1)
+                place = self._left(k, piece, half, along(self._values, piece, *half)[k], beside, usual, depth - 1)
                 if place is not None:
                     return place
             return None
         if not resolved(known, rounding) and len(self._passed.unresolved) < MOST_KEPT:
             self._passed.unresolved.append(start)
         # Beside a switch that was just passed, what is within the tolerance of it is at it.
-        whole = self._switches.size(k)
-        near = 0.1 * self._tolerance * whole if begins and abs(values[0]) < 1e-6 * (whole + size) else 0.0
+        near = 0.1 * self._tolerance * usual if begins and abs(values[0]) < 1e-6 * (usual + size) else 0.0
         passed, _, _ = passages(known, Sign(1, begins), max(BLUR * size, near))
         down = [passage.place for passage in passed if passage.turn < 0]
         if not down:

@@ -24,7 +24,6 @@ from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, place_of
 from mbsym.numerics.kernels.llvm import SCALARS
 from mbsym.numerics.methods.interface import (
-    LARGEST,
     Breakdown,
     Cause,
     Setting,
@@ -35,7 +34,7 @@ from mbsym.numerics.methods.interface import (
     once,
 )
 from mbsym.numerics.methods.led import lead, nearly_singular
-from mbsym.numerics.methods.magnitudes import counted, magnitudes, variables
+from mbsym.numerics.methods.magnitudes import OUTGROWN, counted, magnitudes, variables
 from mbsym.numerics.methods.stepping import Stepping
 from mbsym.numerics.methods.tableaux import exact_number, initial_state
 
@@ -197,7 +196,7 @@ class TaylorRun(Stepping):
         state = np.array(state, self._dtype)
         begin, states = np.array([float(time)]), state[:, None].astype(float)
         known = magnitudes(self._rates, self._kinds, begin, states)
-        self._unit = float(known.times[0])  # of the time, where that is 0
+        self._known, self._unit = known, float(known.times[0])  # of the time, where that is 0
         self._scales = self._dtype(2) ** np.ceil(np.log2(known.natural[:, 0])).astype(self._dtype)
         self._taylor.state[:] = state / self._scales
         cells = np.zeros(0) if self._cells is None else self._cells.values
@@ -312,9 +311,8 @@ class TaylorRun(Stepping):
             raise Breakdown(Cause.BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
         if step > self._least * max(self._unit, abs(now)):
             return
-        if not np.all(np.abs(self._taylor.state) < LARGEST):  # in units of the scene's sizes
-            bound = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{LARGEST:.0e}")
-            raise Breakdown(Cause.BLOW_UP, bound, now, before)
+        if self._known.outgrown(self.end, 0.0):
+            raise Breakdown(Cause.BLOW_UP, OUTGROWN, now, before)
         raise Breakdown(Cause.STUCK, Message("step [[step]]", step=f"{float(step):.2g}"), now, before)
 
 

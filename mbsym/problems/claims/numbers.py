@@ -73,7 +73,7 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
         if not error.contains(0):
             return replace(result, outcome=Outcome.DIFFERS)
         # Where the value itself cannot be told from zero, there is nothing that it could be compared with.
-        size = 1 + abs(value) if last or claim.printed else value.abs_lower()
+        size = 1 + abs(value) if last else value.abs_lower()
         if error.rad() > ROUNDING * size:
             return None
         return (
