@@ -102,7 +102,8 @@ def on_tangent(scenario: Scenario, fixed: Collection[str] = ()) -> Scenario:
     state, moved = list(scenario.state), set[str]()
     for place, deviation in enumerate(found):
         new = motion[place] + Fraction(float(deviation))
-        if place not in kept and abs(float(new - state[place])) > ROUNDED * max(abs(float(new)), abs(deviations[place])):
+        size = max(abs(float(new)), abs(deviations[place]))
+        if place not in kept and abs(float(new - state[place])) > ROUNDED * size:
             state[place] = new
             moved.add(names[place])
     n = len(system.coordinates)

@@ -27,9 +27,9 @@ from mbsym.model.loads import EXACT, GRAVITY_ORDERS
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.tangent import along_motion, on_tangent
 from mbsym.numerics.scenario import Scenario, Specialised, changed, exact, substituted
 from mbsym.numerics.states import dynamics_of
+from mbsym.numerics.tangent import along_motion, on_tangent
 
 if TYPE_CHECKING:
     from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
