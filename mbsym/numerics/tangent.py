@@ -102,7 +102,7 @@ def on_tangent(scenario: Scenario, fixed: Collection[str] = ()) -> Scenario:
     state, moved = list(scenario.state), set[str]()
     for place, deviation in enumerate(found):
         new = motion[place] + Fraction(float(deviation))
-        size = max(abs(float(new)), abs(deviations[place]))
+        size = max(abs(float(new)), abs(float(deviations[place])))
         if place not in kept and abs(float(new - state[place])) > ROUNDED * size:
             state[place] = new
             moved.add(names[place])
