@@ -225,8 +225,9 @@ class _Run:
         study, bodies = self.study, self.study.bodies(self.texts)
         matrices = study.matrices and not bodies
         if study.held:
-            return read_held(self.file, study.name, study.constraints, not matrices)
-        return read_description(self.file, "" if study.constraints else study.name, "" if matrices else study.name)
+            return read_held(self.file, study.name, study.constraints, not matrices, study.instead)
+        untied, moving = "" if study.constraints else study.name, "" if matrices else study.name
+        return read_description(self.file, untied, moving, study.instead)
 
     def _complain(self, request: Any, context: Asked | None) -> None:
         """About what does not go together."""

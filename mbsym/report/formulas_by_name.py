@@ -152,8 +152,8 @@ def accelerations(analysis: Analysis) -> Column:
     short = equations if equations.constraints is None else equations.embedded
     if short is None or (solved is None) != (equations.constraints is None):
         raise NoClosedForm(
-            "without multipliers the equations are longer than the budget of terms (--terms); 'equations' has them with "
-            "multipliers, and model.py computes accelerations"
+            "without multipliers the equations are longer than the budget of terms (--terms); 'equations' has them "
+            "with multipliers, and model.py computes accelerations"
         )
     n = len(short.forcing)
     if n > MOST_SOLVED:
