@@ -245,8 +245,8 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "", inst
     """The system of a file, or None after printing every complaint on standard error.
 
     ``unconstrained`` names a command that does not know constraints: relations that give coordinates are put in, others
-    are complained about, with what works ``instead``.  ``moving`` names one that needs equations of motion, which a system that is given by its
-    matrices has not.
+    are complained about, with what works ``instead``.  ``moving`` names one that needs equations of motion, which a
+    system that is given by its matrices has not.
     """
     from mbsym.report.language import Language
     from mbsym.source import load, render

@@ -66,7 +66,8 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 #: Under constraints.
 INSTEAD = Message(
-    "without 'constraints' base parameters of the open tree are found: they suffice, as constraints add J^T lambda alone"
+    "without 'constraints' base parameters of the open tree are found: they suffice, as constraints add J^T lambda "
+    "alone"
 )
 
 STUDY = Study(

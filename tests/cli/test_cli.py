@@ -404,7 +404,7 @@ def test_every_shipped_system_runs_and_checks_itself(path: Path, tmp_path: Path)
     [("average", "simulate"), ("symmetries", "run --problems 7"), ("regressor", "without 'constraints'")],
 )
 def test_commands_that_know_no_constraints_say_which_they_are(command: str, instead: str) -> None:
-    """And what works: a four-bar has no coordinates that keep it, a hint that asks for them alone cannot be followed."""
+    """And what works: a four-bar has no coordinates that keep it, a hint that asks for them alone is of no use."""
     done = mbsym(command, SYSTEMS / "four-bar.yaml")
     assert done.exit_code == 2
     told = " ".join(done.stderr.split())
