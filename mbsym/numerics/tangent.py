@@ -96,13 +96,13 @@ def on_tangent(scenario: Scenario, fixed: Collection[str] = ()) -> Scenario:
         if len(kept) < basis.shape[1] and size > max(DETERMINED * sizes[place], NOUGHT * np.max(sizes)):
             kept.append(place)
             left = left - np.outer(left @ left[place], left[place]) / size**2
-    deviations = np.array([float(x - y) for x, y in zip(scenario.state, motion, strict=True)])
-    found = basis @ np.linalg.solve(basis[kept], deviations[kept])
+    given = [float(x - y) for x, y in zip(scenario.state, motion, strict=True)]
+    found = basis @ np.linalg.solve(basis[kept], np.array(given)[kept])
     found[np.abs(found) <= ROUNDED * np.max(np.abs(found), initial=0.0)] = 0.0
     state, moved = list(scenario.state), set[str]()
     for place, deviation in enumerate(found):
         new = motion[place] + Fraction(float(deviation))
-        size = max(abs(float(new)), abs(float(deviations[place])))
+        size: float = max(abs(float(new)), abs(given[place]))
         if place not in kept and abs(float(new - state[place])) > ROUNDED * size:
             state[place] = new
             moved.add(names[place])
