@@ -102,8 +102,8 @@ def on_tangent(scenario: Scenario, fixed: Collection[str] = ()) -> Scenario:
     state, moved = list(scenario.state), set[str]()
     for place, deviation in enumerate(found):
         new = motion[place] + Fraction(float(deviation))
-        size: float = max(abs(float(new)), abs(given[place]))
-        if place not in kept and abs(float(new - state[place])) > ROUNDED * size:
+        scale = max(abs(float(new)), abs(given[place]))
+        if place not in kept and abs(float(new - state[place])) > ROUNDED * scale:
             state[place] = new
             moved.add(names[place])
     n = len(system.coordinates)
