@@ -20,7 +20,7 @@ import click
 
 from mbsym.algebra.failures import LOG
 from mbsym.algebra.parts import missing
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.safe import UNBROKEN
 from mbsym.expressions.safe import safe as escaped
 from mbsym.studies.study import Watch, unwatched
@@ -241,14 +241,16 @@ def paused() -> Iterator[None]:
             bar.start()
 
 
-def read_description(path: Path, unconstrained: str = "", moving: str = "", free: bool = True) -> System | None:
+def read_description(
+    path: Path, unconstrained: str = "", moving: str = "", instead: str = "", free: bool = True
+) -> System | None:
     """The system of a file, or None after printing every complaint on standard error.
 
     Unless functions of time may stay ``free`` their laws are put in, and those that have none are complained about.
 
     ``unconstrained`` names a command that does not know constraints: relations that give coordinates are put in, others
-    are complained about.  ``moving`` names one that needs equations of motion, which a system that is given by its
-    matrices has not.
+    are complained about, with what works ``instead``.  ``moving`` names one that needs equations of motion, which a
+    system that is given by its matrices has not.
     """
     from mbsym.model.substitution import lacking_law, with_laws
     from mbsym.report.language import Language
@@ -262,7 +264,7 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "", free
 
         complain_of(system, complaints)
     if system is not None and system.constraints and unconstrained and not complaints.errors:
-        system = _in_free_coordinates(path, system, unconstrained, complaints)
+        system = _in_free_coordinates(path, system, unconstrained, instead, complaints)
     if system is not None and not free:
         system = with_laws(system)
         for function in system.given:
@@ -280,7 +282,7 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "", free
     return None if complaints.errors else system
 
 
-def _in_free_coordinates(path: Path, system: System, command: str, complaints: Complaints) -> System:
+def _in_free_coordinates(path: Path, system: System, command: str, instead: str, complaints: Complaints) -> System:
     """The system in the coordinates that relations leave, which is said; a complaint about each other constraint."""
     from mbsym.analysis.constrained import in_free_coordinates
     from mbsym.model.constraints import is_holonomic
@@ -289,12 +291,10 @@ def _in_free_coordinates(path: Path, system: System, command: str, complaints: C
     free = in_free_coordinates(system)
     for one in free.constraints:
         words = "'mbsym [[command]]' takes no constraint but relations that give a coordinate by others"
-        hint = "choose coordinates that keep it, or write it as  relation: x = r*phi"
+        why = "coordinates that keep it will do, too, or  relation: x = r*phi; a closed loop has none as a rule"
         if not is_holonomic(one):
-            hint = (
-                "if it follows from a relation, write that: relation: x = r*phi; no coordinates keep one that does "
-                "not: 'mbsym integrals' and problems 6 and 7 take it into account"
-            )
+            why = "no coordinates keep it, unless it follows from a relation: then write that,  relation: x = r*phi"
+        hint = joined((Message(instead), Message(why)), "; ") if instead else Message(why)
         complaints.error("constraints", Message(words, command=command), one.span, hint)
     if not free.constraints:
         names = ", ".join(name for name in system.coordinates if name not in free.coordinates)
@@ -303,7 +303,9 @@ def _in_free_coordinates(path: Path, system: System, command: str, complaints: C
     return free
 
 
-def read_held(file: Path, command: str, constrained: bool = False, moving: bool = True) -> System | None:
+def read_held(
+    file: Path, command: str, constrained: bool = False, moving: bool = True, instead: str = ""
+) -> System | None:
     """The system of a file with its inputs at the values of the unperturbed motion, which is said.
 
     A command that is ``constrained`` knows constraints, others refuse them; one that is not about ``moving`` bodies
@@ -312,7 +314,7 @@ def read_held(file: Path, command: str, constrained: bool = False, moving: bool 
     from mbsym.expressions.tree import text
     from mbsym.model.substitution import held
 
-    system = read_description(file, "" if constrained else command, command if moving else "", free=False)
+    system = read_description(file, "" if constrained else command, command if moving else "", instead, free=False)
     if system is None or not system.inputs:
         return system
     from mbsym.report.language import Language

@@ -225,9 +225,9 @@ class _Run:
         study, bodies = self.study, self.study.bodies(self.texts)
         matrices = study.matrices and not bodies
         if study.held:
-            return read_held(self.file, study.name, study.constraints, not matrices)
+            return read_held(self.file, study.name, study.constraints, not matrices, study.instead)
         refused = ["" if knows else study.name for knows in (study.constraints, matrices)]
-        return read_description(self.file, *refused, free=study.free)
+        return read_description(self.file, *refused, study.instead, free=study.free)
 
     def _complain(self, request: Any, context: Asked | None) -> None:
         """About what does not go together."""

@@ -71,7 +71,8 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     if lagrangian and not all(_is_of_one_angle(field, relation) for relation in field.relations):
         raise NoClosedForm(
             "constraints tie positions: families of integrals are looked at in coordinates that keep them",
-            remedy="choose such coordinates, or write a constraint as  relation: x = r*phi",
+            remedy="choose such coordinates, or write a constraint as  relation: x = r*phi; a closed loop has none as "
+            "a rule: 'mbsym equilibria' lists its steady motions at values",
         )
     if lagrangian and len(field.variables) > MOST_IN_ANGLES:
         raise NoClosedForm(

@@ -199,16 +199,23 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     there = np.concatenate([position, start[p:]])
     state = _first(searches, lambda search: search.velocity(there))
     refined = _first(searches, lambda search: exact.refined(scenario.state, state, search))
-    sizes = constraints.sizes([float(x) for x in refined]).tolist()
-    moves = [
-        Move(name, float(old), float(new), float(abs(old - new)) / size)
-        for name, old, new, size in zip(names, scenario.state, refined, sizes, strict=True)
-        if abs(old - new) > MOVED * size
-    ]
     moved = {name for name, old, new in zip(names, scenario.state, refined, strict=True) if old != new}
     typed = {name: value for name, value in scenario.typed.items() if name not in moved}
     new = replace(scenario, positions=tuple(refined[:p]), velocities=tuple(refined[p:]), typed=typed)
-    return Closed(new, tuple(moves), closest, held, scenario.unstated)
+    return Closed(new, moves(scenario, new, constraints), closest, held, scenario.unstated)
+
+
+def moves(given: Scenario, taken: Scenario, constraints: Constraints | None = None) -> tuple[Move, ...]:
+    """What an initial state was changed by, but for roundings."""
+    constraints = _constraints(taken) if constraints is None else constraints
+    assert constraints is not None
+    names = (*given.system.coordinates, *given.system.velocities)
+    sizes = constraints.sizes([float(x) for x in taken.state]).tolist()
+    return tuple(
+        Move(name, float(old), float(new), float(abs(old - new)) / size)
+        for name, old, new, size in zip(names, given.state, taken.state, sizes, strict=True)
+        if abs(old - new) > MOVED * size
+    )
 
 
 def _constraints(scenario: Scenario) -> Constraints | None:

@@ -563,13 +563,13 @@ def _positive(scales: Any) -> Any:
 
 def drift_of(dynamics: Dynamics, times: Any, states: Any) -> Drift | None:
     """The drift along a run, measured by its own sizes; None without constraints."""
-    if dynamics.constraints is None:
+    if dynamics.measured is None:
         return None
     from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
 
     states = np.asarray(states, dtype=float)
     own = np.max(np.abs(states), axis=1)
-    return drift(dynamics.constraints, times, states, scaled(own, sizes_of_scene(dynamics, times, states)))
+    return drift(dynamics.measured, times, states, scaled(own, sizes_of_scene(dynamics, times, states)))
 
 
 def labels(names: Sequence[RowName]) -> str:

@@ -96,6 +96,11 @@ class Dynamics:
         return Constraints(self.scenario, self.ring, self.apart, self.mass_matrix, self.form)
 
     @property
+    def measured(self) -> Constraints | None:
+        """The constraints from which states of a run may stray: those that it is led to, if it is led."""
+        return self.constraints
+
+    @property
     def _solved(self) -> ForwardDynamics | ConstrainedDynamics:
         if self.constraints is not None:
             return self.constraints.dynamics

@@ -115,7 +115,7 @@ def on_rows(field: PolynomialField) -> PolynomialField:
     if not field.are_solved:
         raise NoClosedForm(
             "constraints tie positions by relations that do not give one power of a variable each",
-            remedy="choose coordinates that keep them",
+            remedy="choose coordinates that keep them; a closed loop has none as a rule: problem 7 tells what it keeps",
         )
     denominator = field.reduced(field.denominator)
     if denominator == 0:

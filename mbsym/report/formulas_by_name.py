@@ -20,6 +20,7 @@ from mbsym.formulas.wolfram import wolfram_name
 from mbsym.mechanics.energy import body_energy
 from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
 from mbsym.model.system import INERTIAL
+from mbsym.problems.constraints.motion import dependent_velocities
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Shown, Statement, is_letter, label_meanings, statements
 from mbsym.report.content import Number
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.reducing import Reduced
     from mbsym.analysis.scaled import Formulas
+    from mbsym.problems.constraints.result import Solved
     from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.stability.problem import SubsystemStability
 
@@ -141,24 +143,52 @@ def _constraints(analysis: Analysis) -> Iterator[Line]:
 
 
 def accelerations(analysis: Analysis) -> Column:
-    """q'' = M^-1 f by Cramer's rule.  Raises NoClosedForm under constraints and for more than ``MOST_SOLVED`` rows."""
-    equations = analysis.equations
-    if equations.constraints is not None:
-        raise NoClosedForm("accelerations under constraints come with the multipliers; the equations have them")
-    n = len(equations.forcing)
+    """q'' = M^-1 f by Cramer's rule; under constraints q'' = Y u' + a0 of the equations without multipliers.
+
+    There dependent velocities are expressed by the independent u.  Raises NoClosedForm where these equations have none,
+    and for more than ``MOST_SOLVED`` rows.
+    """
+    equations, solved = analysis.equations, _solved(analysis)
+    short = equations if equations.constraints is None else equations.embedded
+    if short is None or (solved is None) != (equations.constraints is None):
+        raise NoClosedForm(
+            "without multipliers the equations are longer than the budget of terms (--terms); 'equations' has them "
+            "with multipliers, and model.py computes accelerations"
+        )
+    n = len(short.forcing)
     if n > MOST_SOLVED:
         text = "accelerations of so many coordinates ([[count]]) fill pages; model.py computes them"
         raise NoClosedForm(text, count=n)
-    ring = equations.forcing[0].ring
-    rows = [[x.polynomial for x in row] for row in equations.mass_matrix]
-    tops = cramer(ring, rows, [x.polynomial for x in equations.forcing])
+    ring = analysis.ring
+    rows = [[x.polynomial for x in row] for row in short.mass_matrix]
+    tops = cramer(ring, rows, [x.polynomial for x in short.forcing])
     inverse = ring.reciprocal(determinant(ring, rows))
-    return column(ring, [ring.reduce(ring.times(top, inverse)) for top in tops])
+    rates = [ring.reduce(ring.times(top, inverse)) for top in tops]
+    if solved is None:
+        return column(ring, rates)
+    images = dependent_velocities(analysis.form, solved)
+    shifts = [ring.reduce(ring.substitute(x.polynomial, images)) for x in solved.acceleration_shift]
+    lines = zip(solved.transformation.polynomials, shifts, strict=True)
+    return column(ring, [ring.reduce(ring.dot(line, rates) + shift) for line, shift in lines])
+
+
+def _solved(analysis: Analysis) -> Solved | None:
+    """The constraints solved for the dependent velocities; None without constraints, or beyond the budget."""
+    tied = analysis.equations.constraints
+    return None if tied is None else tied.solved
 
 
 def _accelerations(analysis: Analysis) -> Iterator[Line]:
-    solved = accelerations(analysis)
-    yield from (Line(_moving(x.ring, rate), x) for rate, x in zip(_rates(analysis), solved, strict=True))
+    found, solved, tied = accelerations(analysis), _solved(analysis), analysis.equations.constraints
+    remark = ""
+    if tied is not None:
+        text = "without multipliers, dependent velocities expressed by the independent ones: [[names]]"
+        remark = Message(text, names=", ".join(tied.free) or "-")
+    for rate, x in zip(_rates(analysis), found, strict=True):
+        yield Line(_moving(x.ring, rate), x, remark=remark)
+        remark = ""
+    if solved is not None and not solved.regular_everywhere:
+        yield Line("", solved.regular_where, "!=", Message("regular where"))
 
 
 def _rates(analysis: Analysis) -> tuple[str, ...]:

@@ -142,7 +142,8 @@ def _raised(plan: Plan, simulation: Simulation) -> tuple[Bound, ...]:
             bounds.append(_with_error(bound, errors.get(bound.quantity, 0.0)))
             continue
         worst = max(others, key=lambda name: others[name])
-        quantity = worst if others[worst] > bound.integrated else bound.quantity
+        least = max(bound.integrated, bound.total - bound.integrated)  # what the model alone makes stays of its own
+        quantity = worst if others[worst] > least else bound.quantity
         bounds.append(_with_error(replace(bound, quantity=quantity), others[worst]))
     return tuple(bounds)
 

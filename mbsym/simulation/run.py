@@ -17,11 +17,10 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from mbsym.expressions.message import Message
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.states import described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
-from mbsym.numerics.closing import Closed, begun, moving
+from mbsym.numerics.closing import Closed, begun, moves, moving
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import (
     Conservation,
@@ -46,6 +45,7 @@ from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.planning.sizes import kinetic_between, kinetic_rounding
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of, state_names
+from mbsym.numerics.tangent import on_tangent
 from mbsym.numerics.watched import between_rows, nearest_to_singular
 from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
 from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
@@ -155,7 +155,7 @@ def simulate(
         *(scenario, dynamics, request, chosen, motion, *both, followed, error, missing),
         *(certificate, happened, original, None, closed),
         None if closed is None else drift_along(dynamics, motion),
-        () if closed is None else stepped_over(dynamics, dense.times, dense.states, motion.work.singular),
+        () if dynamics.constraints is None else stepped_over(dynamics, dense.times, dense.states, motion.work.singular),
     )
 
 
@@ -172,7 +172,12 @@ def prepared(scenario: Scenario, request: Request) -> tuple[Scenario, Closed | N
     closed = begun(scenario, request.fixed, request.variables == DECLARED)
     closed = moving(closed) if system.constraints else closed
     whole = scenario_of(closed.scenario, model) if later else closed.scenario
-    return whole, closed if system.constraints else None
+    if not system.constraints:
+        return whole, None
+    if model.linear:
+        whole = on_tangent(whole, request.fixed)
+        closed = replace(closed, scenario=whole, moves=moves(scenario, whole))
+    return whole, closed
 
 
 def runs_in_states(system: System, request: Request) -> bool:
@@ -192,10 +197,7 @@ NOT_IN_STATES = "integrates coordinates and their velocities only; this system h
 
 
 def refuse_in_run(system: System, request: Request) -> None:
-    """Raises Constrained for what leaves constraints out; with speeds ValueError and Unusable for what does not know
-    them."""
-    if request.model.linear:
-        refuse_constraints(system, "linearised equations in numbers")
+    """With speeds, raises ValueError and Unusable for what does not know them."""
     if not runs_in_states(system, request):
         return
     features = {"a linear model": request.model.linear, "going on from an earlier run": request.earlier is not None}

@@ -176,8 +176,11 @@ def as_json(context: Asked, request: Request, derived: Found) -> str:
     )
 
 
+#: Under constraints.
+INSTEAD = Message("'mbsym simulate' takes constraints, and runs through every period of the fast phase")
+
 STUDY = Study(
-    "average", Request, derive, answer, refusal, unfit, as_json,
+    "average", Request, derive, answer, refusal, unfit, as_json, instead=INSTEAD,
     matrices=True, held=False, out=Single("Write the averaged description here."), document=document,
     letters=True,
 )  # fmt: skip

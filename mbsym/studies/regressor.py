@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym.studies.described import public
 from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Watch, failed
 
@@ -63,4 +64,12 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
     return failed(error, "no base parameters")
 
 
-STUDY = Study("regressor", Request, regressor.derive, answer, refusal, held=False, out=Folder(json=True))
+#: Under constraints.
+INSTEAD = Message(
+    "without 'constraints' base parameters of the open tree are found: they suffice, as constraints add J^T lambda "
+    "alone"
+)
+
+STUDY = Study(
+    "regressor", Request, regressor.derive, answer, refusal, instead=INSTEAD, held=False, out=Folder(json=True)
+)

@@ -325,13 +325,13 @@ class Study(Generic[R, F]):
     what of a request does not go together; fields that could not be read are None there, but among those that were
     ``typed``.  ``pairs``: options that do not go together, or not alone, whatever the system is.
 
-    ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
-    not, by the texts of the options; ``held``: whether inputs are held at their constant values; ``free``: whether
-    functions of time without a law are understood.  ``out``: where files go; ``writes``: whether there are any, by what
-    was typed; ``document`` makes the single one.  ``timed``: whether the
-    seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``several``: whether many
-    descriptions, and folders of them, may be asked about at once; ``together`` compares their results.  ``rare``:
-    fields whose options stand in ``mbsym explain`` where ``--help`` would fill more than a screen.
+    ``constraints``, ``matrices``: whether descriptions with these are understood, ``instead``: what works under
+    constraints where they are not, ``bodies``: whether matrices are not, by the texts of the options; ``held``: whether
+    inputs are held at their constant values; ``free``: whether functions of time without a law are understood.
+    ``out``: where files go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.
+    ``timed``: whether the seconds are told. ``letters``: whether formulas are written in the author's letters.
+    ``several``: whether many descriptions, and folders of them, may be asked about at once; ``together`` compares their
+    results. ``rare``: fields whose options stand in ``mbsym explain`` where ``--help`` would fill more than a screen.
     """
 
     name: str
@@ -343,6 +343,7 @@ class Study(Generic[R, F]):
     json: Callable[[Asked, R, F], str] | None = None
     json_help: str = "Print JSON instead of a summary."
     constraints: bool = False
+    instead: str = ""
     matrices: bool = False
     bodies: Callable[[Mapping[str, Any]], bool] = lambda texts: False
     held: bool = True

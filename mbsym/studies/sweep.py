@@ -64,7 +64,7 @@ def _names(system: System, text: str) -> Sequence[str]:
 
 
 def _known(system: System, text: str) -> Sequence[str]:
-    return (*_names(system, text), *(("t",) if text.startswith(MOTION) else ()))
+    return (*_names(system, text), *((*system.variables, "t") if text.startswith(MOTION) else ()))
 
 
 @dataclass(frozen=True)

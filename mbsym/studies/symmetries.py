@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym.studies.request import Numbers
 from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Watch, failed, refused
 
@@ -66,6 +67,10 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
     return failed(error, "no symmetries")
 
 
+#: Under constraints.
+INSTEAD = Message("'mbsym run --problems 7' tells what is kept under constraints, momenta among it")
+
 STUDY = Study(
-    "symmetries", Request, derive, answer, refusal, json=as_json, matrices=True, held=False, out=None, letters=True
-)
+    "symmetries", Request, derive, answer, refusal, json=as_json, instead=INSTEAD, matrices=True, held=False, out=None,
+    letters=True,
+)  # fmt: skip

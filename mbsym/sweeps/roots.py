@@ -14,9 +14,12 @@ import numpy as np
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.matrices import added
+from mbsym.algebra.program import Program
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.maps.section import Section
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.variables import ring_of
 from mbsym.numerics.closing import begun
 from mbsym.numerics.ensembles.ensemble import beginning
 from mbsym.numerics.ensembles.parametrised import Parametrised, released
@@ -24,7 +27,7 @@ from mbsym.numerics.ensembles.variation import members
 from mbsym.numerics.kernels import arrays, llvm
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.scenario import Names, Scenario
+from mbsym.numerics.scenario import Names, Scenario, substituted
 from mbsym.sweeps.formula import written
 from mbsym.sweeps.points import Column
 
@@ -189,6 +192,12 @@ class SimulatedMeasure:
         self._dynamics = Parametrised(begun(scenario, declared=False).scenario, free, overrides)
         self._times = np.linspace(0.0, time, ROWS)
         fresh = released(scenario, free)
+        if scenario.system.speeds:  # and unit vectors, quaternions: of the motion in coordinates
+            form, program = SpeedForm(scenario.system, ring_of(scenario.system)), Program()
+            told = [x.name for x in (*form.positions, *form.speeds)]
+            made = substituted(program, form.state_in_coordinates(program), fresh)
+            own = scenario.system.coordinates
+            fresh.bound |= {name: x for name, x in zip(told, made, strict=True) if name not in own}
         node = Lowering(fresh, Names(fresh))(formula)
         self._formula = arrays.kernel(Code(fresh, self._dynamics.inputs, (node,)))
         self.columns = (

@@ -145,7 +145,7 @@ def test_unknown_names_and_missing_results(tmp_path: Path) -> None:
     result = show("simple-pendulum", "B", "T", code=1)
     assert "B: the system has no inputs" in result.stderr
     assert result.stdout.startswith("T = ")
-    assert show("cartesian-pendulum", "accelerations").exit_code == 1
+    assert show("simple-pendulum", "constraints").exit_code == 1
 
 
 def test_python_has_them_too() -> None:

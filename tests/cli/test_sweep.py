@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from math import sqrt
+from math import cos, sin, sqrt
 from pathlib import Path
 
 import jsonschema
@@ -226,3 +226,29 @@ def test_ctrl_c_keeps_finished_chunks_and_the_same_command_goes_on(
     assert sweep("satellite", tmp_path, *PLANE).exit_code == 0
     assert (tmp_path / "sweep.csv").read_bytes() == (plane / "sweep.csv").read_bytes()
     assert [one.stat().st_mtime_ns for one in kept] == before
+
+
+FREE = """
+mbsym: 1
+name: A free body of revolution
+parameters: {A: {value: 1}, C: {value: 2}}
+bodies:
+  - {name: body, attached to: 0, mass: 1, rotation: {axes: [1, 2, 3], angles: [f, g, h]},
+     inertia about: joint, inertia: [A, A, C], speeds: {p: omega1, q: omega2, r: omega3},
+     orientation: {e: quaternion}}
+initial: {e0: 1, e1: 0, e2: 0, e3: 0, p: 0, q: 1/2, r: 1}
+"""
+
+
+def test_motions_are_measured_in_speeds_and_quaternions(tmp_path: Path) -> None:
+    """p' = (A - C) q r/A, q' = (C - A) r p/A (Euler): p = -sin((C - A) t/A)/2; without p and q, e0 = cos(t/2)."""
+    path = tmp_path / "free.yaml"
+    path.write_text(FREE, encoding="utf-8")
+    options = ["sweep", str(path), "--time", "2", "--format", "csv", "--vary", "A=1:2:3"]
+    invoked(*options, "-o", str(tmp_path / "p"), "--measure", "simulate:p", code=0)
+    wanted = [-sin((2 - a) / a * 2) / 2 for a in (1, 1.5, 2)]
+    assert [float(row["final"]) for row in rows(tmp_path / "p")] == pytest.approx(wanted, abs=1e-7)
+    path.write_text(FREE.replace("q: 1/2", "q: 0"), encoding="utf-8")
+    invoked(*options, "-o", str(tmp_path / "e"), "--measure", "simulate:e0", code=0)
+    assert [float(row["final"]) for row in rows(tmp_path / "e")] == pytest.approx([cos(1)] * 3, abs=1e-7)
+    invoked(*options, "--measure", "simulate:e7", code=2)

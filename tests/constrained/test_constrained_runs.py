@@ -533,12 +533,8 @@ def test_an_open_loop_ends_with_the_closest_configuration(tmp_path: Path) -> Non
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize(
-    "option",
-    [("--linear",), ("--method", "lsoda")],
-)
-def test_what_does_not_know_constraints_refuses_by_name(option: tuple[str, ...], tmp_path: Path) -> None:
-    result = called(tmp_path, FOUR_BAR + FOUR_BAR_START, *option)
+def test_what_does_not_know_constraints_refuses_by_name(tmp_path: Path) -> None:
+    result = called(tmp_path, FOUR_BAR + FOUR_BAR_START, "--method", "lsoda")
     assert result.exit_code == 2, result.output
     assert "constraints" in result.stderr
     assert not (tmp_path / "out").exists()

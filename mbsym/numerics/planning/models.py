@@ -13,11 +13,12 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node
+from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import names
 from mbsym.mechanics.motion import motion_values
@@ -28,20 +29,49 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario, Specialised, changed, exact, substituted
 from mbsym.numerics.states import dynamics_of
+from mbsym.numerics.tangent import along_motion, on_tangent
+
+if TYPE_CHECKING:
+    from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
+    from mbsym.mechanics.programs import ForwardDynamics
+    from mbsym.numerics.constrained import Constraints
 
 # The equations of motion linearised about the unperturbed motion.
 #
 #     x' = x0' + J(t, x0) (x - x0),      x0(t) = (value + rate t, rate),      J = d rhs/dx
 #
-# Their energies are those of the whole system, which this motion does not conserve.
+# Their energies are those of the whole system, which this motion does not conserve.  With constraints J is that of the
+# equations without multipliers: its flow keeps C (x - x0) = 0, the rows to first order, if it begins there
+# (``mbsym.numerics.tangent``), and then is that of problem 5 in the independent deviations.
 
 
 class LinearisedDynamics(Dynamics):
-    """x' = x0' + J(t, x0(t)) (x - x0(t)) about the unperturbed motion x0 = (value + rate t, rate)."""
+    """x' = x0' + J(t, x0(t)) (x - x0(t)) about the unperturbed motion x0 = (value + rate t, rate).
+
+    Nothing leads its states to constraints, which these keep to first order by themselves.
+    """
+
+    constraints = None
+
+    def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
+        super().__init__(on_tangent(scenario), ring)
+
+    @cached_property
+    def whole(self) -> Dynamics:
+        """The equations that are linearised."""
+        return Dynamics(self.scenario, self.ring)
+
+    @property
+    def _solved(self) -> ForwardDynamics | ConstrainedDynamics:
+        return self.whole._solved
+
+    @property
+    def measured(self) -> Constraints | None:
+        return self.whole.constraints
 
     @cached_property
     def right_hand_side(self) -> Code:
-        whole = Dynamics(self.scenario, self.ring)
+        whole = self.whole
         plain, code = self._specialised, whole.right_hand_side
         at_rest, rates = self._motion(plain)
         rows = whole.jacobian
@@ -63,6 +93,13 @@ class LinearisedDynamics(Dynamics):
         lower = Lowering(program, program.bound)
         time_ = program.input("t")
         at_rest, rates = {}, {}
+        if self.system.constraints:  # velocities that the motion does not name follow from them
+            state = along_motion(self.whole)
+            for i, name in enumerate(self.system.coordinates):
+                slope = program.number(state[self.size + i])
+                at_rest[name] = program.number(state[i]) + program.product(slope, time_)
+                rates[velocity_name(name)] = slope
+            return at_rest, rates
         for name, (value, rate) in motion_values(self.system).items():
             slope = lower(rate)
             at_rest[name] = lower(value) + program.product(slope, time_)

@@ -28,14 +28,16 @@ MOST_MOVES = 6
 
 def constraint_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(title, text) of the summary's lines, without a title what goes on; none without constraints."""
-    known = run.dynamics.constraints
+    known = run.dynamics.measured
     if known is None or run.drift is None or run.closed is None:
         return
-    unit = pretty(time_unit(run.system))
+    unit, linear = pretty(time_unit(run.system)), run.request.model.linear
     yield "loops", rows_line(known)
-    for place, text in enumerate(start_lines(run.closed, run.system)):
+    for place, text in enumerate(start_lines(run.closed, run.system, linear)):
         yield "" if place else "start", text
     yield "drift", drift_line(run.drift, known)
+    if linear:
+        yield "", Message("linear equations keep the constraints to first order about the unperturbed motion")
     if run.trajectory.work.singular:
         yield "singular", singular_line(run.trajectory.work.singular, unit)
     if run.stepped_over:
@@ -60,20 +62,30 @@ def rows_line(known: Constraints) -> Message:
     return joined(messages, "; ")
 
 
-def start_lines(closed: Closed, system: System) -> Iterator[Message]:
-    """How far the initial state was moved to satisfy the constraints."""
+def start_lines(closed: Closed, system: System, linear: bool = False) -> Iterator[Message]:
+    """How far the initial state was moved to satisfy the constraints; of a ``linear`` model to first order."""
     held = [Message("fixed: [[names]]", names=", ".join(closed.fixed))] if closed.fixed else []
     if not closed.moves:
-        yield joined([Message("the initial state satisfies the constraints"), *held], "; ")
+        satisfied = "the initial state satisfies the constraints"
+        if linear:
+            satisfied = "the initial state satisfies the constraints to first order about the unperturbed motion"
+        yield joined([Message(satisfied), *held], "; ")
         return
     units = {x.name: pretty(unit_of(system, x.name)) for x in closed.moves}
     if closed.given_stays:
         text = "the initial state satisfies the constraints; velocities that were left out follow from them"
+        if linear:
+            text = (
+                "the initial state satisfies the constraints to first order about the unperturbed motion; velocities "
+                "that were left out follow from them"
+            )
         yield joined([Message(text), *held], "; ")
         shown = [f"{x.name} = {with_unit(_shown(x.found), units[x.name])}" for x in closed.moves]
         yield joined([*shown[:MOST_MOVES], *(["..."] if len(shown) > MOST_MOVES else [])], ", ")
         return
-    if closed.closest:
+    if linear:
+        text = "begun from a state that satisfies the constraints to first order about the unperturbed motion"
+    elif closed.closest:
         text = "what was given does not satisfy the constraints: begun from the closest state that does (mass matrix)"
     else:
         text = (
@@ -140,7 +152,7 @@ def drift_columns(run: Simulation) -> Mapping[str, Any]:
 
 def constraints_json(run: Simulation) -> doc.Constraints | UnsetType:
     """What simulation.json says; nothing without constraints."""
-    known, closed, drift = run.dynamics.constraints, run.closed, run.drift
+    known, closed, drift = run.dynamics.measured, run.closed, run.drift
     if known is None or closed is None or drift is None:
         return UNSET
     positions, velocities = drift.largest

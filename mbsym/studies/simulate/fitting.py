@@ -333,9 +333,6 @@ def _check_constrained(system: System, request: Run, wrong: Reasons) -> None:
     from mbsym.numerics.methods.table import LED, METHODS
 
     constraints = listed_constraints(system.constraints)
-    if request.model.linear:
-        message = Message("--linear does not take constraints into account yet ([[which]])", which=constraints)
-        wrong.complain("--linear", "constraints", message, "without them this would be another system")
     if request.method in METHODS and request.method not in LED:
         hint = Message("these do: [[names]]", names=", ".join(("auto", *LED)))
         message = Message(
@@ -450,9 +447,11 @@ def _begun_at(scenario: Scenario | None, request: Run) -> Scenario | None:
         return scenario
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.closing import closed
+    from mbsym.numerics.tangent import on_tangent
 
     try:
-        return closed(scenario, request.fixed).scenario
+        begun = closed(scenario, request.fixed).scenario
+        return on_tangent(begun, request.fixed) if request.earlier.model.linear else begun
     except Failure:
         return scenario
 
