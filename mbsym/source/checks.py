@@ -420,12 +420,12 @@ def _check_roots(system: System, known: Mapping[str, Any], reading: Reading) -> 
             roots[node.span] = node, node.argument
         elif isinstance(node, Operation) and node.operator == "**" and not _is_whole(node.right):
             roots[node.span] = node, node.left
-    for span, (node, argument) in roots.items():
-        if not names(node):
+    for span, (root, argument) in roots.items():
+        if not names(root):
             continue  # it has been judged where it stands
         if sign_by_structure(argument, signs) == "negative":
             reading.error("no-number", _OF_NEGATIVE, span)
-        elif names(node) <= known.keys() and (nothing := meaningless(node, known)) is not None and nothing[0] is node:
+        elif names(root) <= known.keys() and (nothing := meaningless(root, known)) is not None and nothing[0] is root:
             message = Message("with the given values this is no real number: [[why]]", why=nothing[1])
             reading.error("no-number", message, span)
 
