@@ -157,6 +157,10 @@ def test_a_system_runs_alike_in_all_units(name: str, units: str) -> None:
 #: Certificates of these are over a tenth of the time, and to fewer digits: that is a minute otherwise.
 LONG = {"gyrostat", "rolling-disc-speeds", "rolling-sphere-speeds"} | {x for x in UNITS if x.startswith("satellite")}
 
+#: Its mass matrix is eliminated with cancellation, for which balls pay: a certified step is 1e-5 s, in every unit, and
+#: half a second would be two hundred thousand of them.
+UNCERTIFIED = {"tethered-satellites"}
+
 #: In units of powers of two a bicycle's bound is the same to its last digit (below).  In others sizes and first rates
 #: agree to 1e-14, but some of its 22 steps end a little elsewhere: another speed errs most, by up to 1.3 times as much.
 ROUNDED = {"bicycle": 0.5}
@@ -173,6 +177,8 @@ def test_choices_and_bits_are_the_same_in_all_units(name: str, units: str) -> No
     assert chosen[1] == chosen[0]
     assert plans[1].setting.tolerance == pytest.approx(plans[0].setting.tolerance, rel=0.1)
     assert plans[1].bound.total == pytest.approx(plans[0].bound.total, rel=ROUNDED.get(name, 0.2))
+    if name in UNCERTIFIED:
+        return
     long = name in LONG
     first, other = (enclosed(one, float(unit) / (20 if long else 2), 1e-6 if long else 1e-10) for one, unit in kinds)
     assert other == first
