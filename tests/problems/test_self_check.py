@@ -556,7 +556,7 @@ CAUGHT = [
     ),
     Mistake(
         "the height of a joint in uniform gravity",
-        "mechanics.loads.kinds:_uniform_force_function",
+        "mechanics.loads.kinds:lifting",
         "field[parent].dot(motion.offset)",
         "algebra.zero",
         "machine",
