@@ -44,7 +44,7 @@ def test_relations_are_put_in_where_a_command_knows_no_others(tmp_path: Path) ->
     assert (done.exit_code, "for 'symmetries' the relations are put in, and phi left out" in done.stderr) == (0, True)
     rolling = "constraints:\n  - velocity: x_dot = r*phi_dot\n"
     done = invoked("symmetries", written(tmp_path, TEXT.partition("constraints:")[0] + rolling), code=2)
-    assert "if it follows from a relation, write that: relation: x = r*phi" in " ".join(done.stderr.split())
+    assert "unless it follows from a relation: then write that, relation: x = r*phi" in " ".join(done.stderr.split())
     assert "wheel.yaml:8:5" in done.stderr
 
 

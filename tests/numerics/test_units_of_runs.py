@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction as F
 from functools import cache
 from math import sqrt
+from operator import attrgetter
 from typing import Any
 
 import mpmath
@@ -166,23 +167,23 @@ UNCERTIFIED = {"tethered-satellites"}
 ROUNDED = {"bicycle": 0.5}
 
 
-@pytest.mark.parametrize("units", ["mm-g-ms", "microns"])
 @pytest.mark.parametrize("name", sorted(UNITS))
-def test_choices_and_bits_are_the_same_in_all_units(name: str, units: str) -> None:
+def test_choices_and_bits_are_the_same_in_all_units(name: str) -> None:
     """What --accuracy takes, what bound it names, and how a certificate comes about."""
     given = scenario(described(name))
-    kinds = [(given, F(1)), (rescaled(given, OTHER[units]), OTHER[units][2])]
-    plans = [plan_for(one, Request(float(2 * unit), samples=101), Accuracy(1e-6))[0] for one, unit in kinds]
-    chosen = [(plan.method, plan.scalar, plan.setting.step, plan.model, plan.reached) for plan in plans]
-    assert chosen[1] == chosen[0]
-    assert plans[1].setting.tolerance == pytest.approx(plans[0].setting.tolerance, rel=0.1)
-    assert plans[1].bound.total == pytest.approx(plans[0].bound.total, rel=ROUNDED.get(name, 0.2))
+    kinds = [(given, F(1)), *((rescaled(given, OTHER[units]), OTHER[units][2]) for units in ("mm-g-ms", "microns"))]
+    first, *others = (plan_for(one, Request(float(2 * unit), samples=101), Accuracy(1e-6))[0] for one, unit in kinds)
+    chosen = attrgetter("method", "scalar", "setting.step", "model", "reached")
+    for plan in others:
+        assert chosen(plan) == chosen(first)
+        assert plan.setting.tolerance == pytest.approx(first.setting.tolerance, rel=0.1)
+        assert plan.bound.total == pytest.approx(first.bound.total, rel=ROUNDED.get(name, 0.2))
     if name in UNCERTIFIED:
         return
-    long = name in LONG
-    first, other = (enclosed(one, float(unit) / (20 if long else 2), 1e-6 if long else 1e-10) for one, unit in kinds)
-    assert other == first
-    assert first is None or first[1:] == (True, True)
+    part, width = (20, 1e-6) if name in LONG else (2, 1e-10)
+    certified, *same = (enclosed(one, float(unit) / part, width) for one, unit in kinds)
+    assert same == [certified, certified]
+    assert certified is None or certified[1:] == (True, True)
 
 
 def test_powers_of_two_change_no_digit_of_a_bound() -> None:
