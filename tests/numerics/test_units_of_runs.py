@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction as F
@@ -184,6 +185,13 @@ def test_choices_and_bits_are_the_same_in_all_units(name: str) -> None:
     certified, *same = (enclosed(one, float(unit) / part, width) for one, unit in kinds)
     assert same == [certified, certified]
     assert certified is None or certified[1:] == (True, True)
+
+
+def test_of_single_precision_all_that_is_finite_is_within_the_bound() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = within_bound(np.array([[1e38, np.inf, np.nan, 0.0]], dtype=np.float32))
+    assert found.tolist() == [True, False, False, True]
 
 
 def test_powers_of_two_change_no_digit_of_a_bound() -> None:

@@ -34,7 +34,7 @@ BEYOND = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{BOUND:
 
 def within_bound(states: Any) -> Any:
     """Which states (d, ...) are within the bound, shape (...); numbers they are then, too."""
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):  # of single precision all that is finite is within
         return np.all(np.abs(states) < BOUND, axis=0)
 
 
