@@ -30,7 +30,7 @@ from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.events.switching import rates
 from mbsym.numerics.inverse import inverse_constrained
 from mbsym.numerics.methods import runge_kutta
-from mbsym.numerics.methods.interface import Cause, Setting
+from mbsym.numerics.methods.interface import Cause, Setting, within_bound
 from mbsym.numerics.methods.magnitudes import Magnitudes, about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.lyapunov import exponents
