@@ -16,7 +16,7 @@ import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.orbits import lyapunov, variational
 from mbsym.numerics.orbits.lyapunov import Parting, exponents
-from mbsym.numerics.orbits.periodic import NEARLY, Guess, NotFound, Orbit, periodic_orbit
+from mbsym.numerics.orbits.periodic import Guess, NotFound, Orbit, periodic_orbit
 from mbsym.numerics.scenario import scenario
 from mbsym.report.runs.orbit_files import lyapunov_sentences as sentences
 from mbsym.report.runs.orbit_files import sentences as orbit_sentences
@@ -420,23 +420,3 @@ def test_an_orbit_does_not_depend_on_the_unit_of_length(size: str, unit: float) 
     assert found.period == pytest.approx(4 * ellipk(square / (2 * w**2)) / w, rel=1e-11)
     assert found.trivial == 2
     assert found.verified < 1e-10
-
-
-FAR = """
-mbsym: 1
-name: Duffing's oscillator about a place
-bodies: [{name: bob, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}]
-loads: [{potential: (x - PLACE)**2/2 + (x - PLACE)**4/4}]
-initial: {x: PLACE + 1}
-"""
-
-
-@pytest.mark.parametrize("place", ["0", "1000", "10**6"])
-def test_an_orbit_does_not_depend_on_the_origin(place: str) -> None:
-    """x'' = -x - x^3 from 1: T = 4 K(1/2)/sqrt(2); from the guess 3, where Newton's method goes astray, none closes."""
-    text = FAR.replace("PLACE", place)
-    found = orbit(text, 5.2)
-    assert found.period == pytest.approx(4 * ellipk(0.25) / np.sqrt(2), rel=1e-9)
-    assert found.closure < NEARLY
-    with pytest.raises(NotFound, match="no convergence"):
-        orbit(text, 3.0)

@@ -32,9 +32,8 @@ from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
 from mbsym.numerics.orbits.variational import Flow
-from mbsym.numerics.planning.sizes import sizes_of_scene
 
-#: Newton's steps at most, and how small what is left over must be, as part of the motion's size.
+#: Newton's steps at most, and how small what is left over must be, as part of the state's size.
 MOST_STEPS, CLOSED = 40, 1e-11
 
 #: What rounding and a motion that is hard to follow may leave over, once so many steps bring nothing more.
@@ -46,7 +45,7 @@ SHORTEST, HALVINGS = 0.05, 4
 #: How strongly singular values are damped, as multiples of what is left over; tried one after the other.
 DAMPINGS = (0.01, 0.1, 1.0, 1e-4, 0.0)
 
-#: Where the motion's speed times its period is this part of its size only, it rests.
+#: Where the motion's speed times its period is this part of the state's size only, it rests.
 RESTING = 1e-6
 
 #: Singular values below this part of the largest are those of directions along which the orbit may be moved.
@@ -54,9 +53,6 @@ RANK = 1e-9
 
 #: A vector is an eigenvector for 1 if Phi moves it by less, as part of |Phi| and its own length.
 FIXED = 1e-7
-
-#: The motion of the guess is looked at in so many states.
-EXTENT = 65
 
 #: The equations are the same a period later if their right-hand sides differ by less, at so many times.
 REPEATED, SAMPLES = 1e-8, 25
@@ -78,10 +74,9 @@ class Trivial:
 class Orbit:
     """A periodic motion x(t + T) = x(t) + turns, which are whole revolutions or what a coordinate is shifted by.
 
-    ``closure`` is |x(T) - x0 - turns| as part of the motion's size (``_extent``), by the method that found it;
-    ``verified`` the same by ``verifier``, another method.  ``multipliers`` are in decreasing order of size;
-    ``uncertainty`` is how far they move when Phi is computed with another tolerance.  ``trivial`` of them are 1 for the
-    ``reasons``.
+    ``closure`` is |x(T) - x0 - turns| as part of the state's size, by the method that found it; ``verified`` the same
+    by ``verifier``, another method.  ``multipliers`` are in decreasing order of size; ``uncertainty`` is how far they
+    move when Phi is computed with another tolerance.  ``trivial`` of them are 1 for the ``reasons``.
     """
 
     names: tuple[str, ...]
@@ -170,7 +165,7 @@ def periodic_orbit(
     free_period = not (known_time or guess.keep_period)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     turns = np.array([2 * np.pi * guess.turns.get(name, 0) for name in names])
-    rates, sizes = compiled_kernel(dynamics, "right_hand_side"), _extent(dynamics, guess)
+    rates, sizes = compiled_kernel(dynamics, "right_hand_side"), about(dynamics, 0.0, guess.state).sizes[:, 0]
     if known_time:
         _require_repetition(dynamics, rates, guess, sizes)
     for name in guess.shifted:
@@ -201,28 +196,11 @@ def periodic_orbit(
     left = min(best.size, here.size)
     raise NotFound(
         Message(
-            "no convergence: what is left over after [[steps]] is [[left]] of the motion's size",
+            "no convergence: what is left over after [[steps]] is [[left]] of the state's size",
             steps=Counted(count + 1, "step"),
             left=f"{left:.1e}",
         )
     )
-
-
-def _extent(dynamics: Dynamics, guess: Guess) -> Any:
-    """What states are measured by, shape (2n,): by how much a position changes in the motion of the guess, the largest
-    |v|, and at least what as much kinetic energy moves each by; so that where the origin is does not count.
-
-    Raises NotFound.
-    """
-    times = np.linspace(0.0, guess.period, EXTENT)
-    try:
-        run = METHODS["dop853"].start(dynamics, Setting(1e-9), initial=np.array(guess.state, float))
-        states = np.array(run.fill(times), float)
-    except Breakdown as ended:
-        raise NotFound(Message("the motion of the guess breaks down before its period is over")) from ended
-    own = np.concatenate([np.ptp(states[: dynamics.size], axis=1), np.max(np.abs(states[dynamics.size :]), axis=1)])
-    found = np.maximum(own, sizes_of_scene(dynamics, times, states))
-    return np.where(found > 0, found, about(dynamics, 0.0, guess.state).sizes[:, 0])
 
 
 def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess, sizes: Any) -> None:
@@ -285,7 +263,7 @@ class _Search:
         except Breakdown:
             return None
         rest = np.where(self.shifted, 0.0, end - state - self.turns)
-        size = float(np.max(np.abs(rest) / self.energy.sizes))
+        size = float(np.max(np.abs(rest) / self.energy.scale(state)))
         if self.wanted is not None:
             off = self.wanted - self.energy(state)
             rest = np.append(rest, -off)
@@ -299,7 +277,7 @@ class _Search:
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """
         size, basis = self.flow.size, self.flow.tangent(here.state)
-        scale = self.energy.sizes
+        scale = self.energy.scale(here.state)
         allowed = np.diag(scale) if basis is None else scale[:, None] * np.linalg.qr(basis / scale[:, None])[0]
         matrix, units = np.where(self.shifted[:, None], 0.0, here.phi - np.eye(size)), scale
         if self.wanted is not None:
@@ -351,21 +329,25 @@ def _least_squares(matrix: Any, right: Any, damping: float) -> Any:
 
 
 class _Energy:
-    """h = T2 - T0 - U and its gradient; ``sizes`` (2n,) are what changes of a state are measured by."""
+    """h = T2 - T0 - U and its gradient; ``sizes`` are those that the scene gives the components of the state."""
 
     def __init__(self, dynamics: Dynamics, sizes: Any) -> None:
         self._energies, self.sizes = compiled_kernel(dynamics, "energies"), sizes
 
+    def scale(self, state: Any) -> Any:
+        """What changes of a state are measured by."""
+        return self.sizes + np.abs(state)
+
     def size(self, state: Any) -> float:
         """By how much h changes where the state does by as much as its sizes."""
-        return float(np.abs(self.gradient(state)) @ self.sizes)
+        return float(np.abs(self.gradient(state)) @ self.scale(state))
 
     def __call__(self, state: Any) -> float:
         return float(self._energies(np.concatenate(([0.0], state)))[1])
 
     def gradient(self, state: Any) -> Any:
         """By central differences of sixth order, good to some 11 digits."""
-        return _differences(self, state, self.sizes)
+        return _differences(self, state, self.scale(state))
 
 
 def _differences(function: Callable[[Any], Any], state: Any, scale: Any) -> Any:
@@ -386,7 +368,7 @@ def _orbit(
     dynamics: Dynamics, flow: Flow, place: _Place, turns: Any, steps: int, free: bool, rates: Any, energy: _Energy
 ) -> Orbit:
     state, period = place.state, place.period
-    scale = energy.sizes
+    scale = energy.scale(state)
     path = period * rates(np.concatenate(([0.0], state))) / scale
     if free and float(np.max(np.abs(path))) < RESTING:
         raise NotFound(
@@ -455,7 +437,7 @@ def _trivial(
     left: list[Any] = []
     reasons = []
     candidates: list[tuple[str, Any, bool]] = []
-    scale = energy.sizes
+    scale = energy.scale(state)
     cyclic = _cyclic_coordinates(dynamics, state, scale, period)
     if path is not None:
         candidates.append((Message("the motion itself: the equations do not depend on the time"), path, True))
