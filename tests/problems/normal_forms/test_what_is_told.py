@@ -107,9 +107,9 @@ def test_numbers_are_needed_of_what_formulas_hold_only() -> None:
         for x in told(unused, 6)
     )
     lacking = mbsym.loads(SOFT.replace("FORCE", "-c*x_dot").replace("{w:", "{c: {sign: real}, w:", 1), (6,))
-    none = "At the given values of the parameters nothing is said of stability: c have none."
+    none = "At the given values of the parameters nothing is said of stability: without a value is c."
     assert none in told(lacking, 6)
-    assert "nothing is said of stability: $c$ have none." in TARGETS["latex"].render(lacking, (6,))
+    assert "nothing is said of stability: without a value is $c$." in TARGETS["latex"].render(lacking, (6,))
     assert lacking.stability.numerical is None
 
 
