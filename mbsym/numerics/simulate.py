@@ -323,15 +323,21 @@ def _checked(rows: Any, times: Any) -> None:
 
 
 def _escaped(dynamics: Dynamics, first: Any, times: Any, rows: Any) -> Breakdown | None:
-    """What is wrong where the last row has passed an escape: 10^12 of the sizes, and as much again in no time.
+    """What is wrong where the last row y has passed an escape: 10^12 of the sizes, and as much again in no time.
 
-    What an exponential makes of a size in the whole time has a rate of some hundred of it at most.
+    Like 1/(t0 - t), y, y' and y'' of a component point one way there, and each is small beside the next one.  What
+    swings never does so, and what an exponential makes of a size has a rate of some hundred of the whole time at most.
     """
-    last, begin = rows[:, -1].astype(float), float(first[0])
+    now, last, begin = float(times[-1]), rows[:, -1].astype(float), float(first[0])
+    sudden = ESCAPING * (now - begin)
+    rate = compiled_kernel(dynamics, "right_hand_side")
     with np.errstate(all="ignore"):
-        rates = np.abs(compiled_kernel(dynamics, "right_hand_side")(np.concatenate(([float(times[-1])], last))))
-        sudden = bool(np.any(np.abs(last) < ESCAPING * (float(times[-1]) - begin) * rates))
-    if not sudden or not about(dynamics, begin, first[1:].astype(float)).outgrown(last, 0.0):
+        rates = rate(np.concatenate(([now], last)))
+        step = 1e-3 * sudden
+        curved = (rate(np.concatenate(([now + step], last + step * rates))) - rates) / step
+        one_way = (last * rates > 0) & (rates * curved > 0)
+        away = one_way & (np.abs(last) < sudden * np.abs(rates)) & (np.abs(rates) < sudden * np.abs(curved))
+    if not np.any(away) or not about(dynamics, begin, first[1:].astype(float)).outgrown(last, 0.0):
         return None
     return Breakdown(Cause.BLOW_UP, OUTGROWN, times[-1], last, rows[:, :-1])
 

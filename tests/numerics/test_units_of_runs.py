@@ -7,7 +7,7 @@ from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction as F
 from functools import cache
-from math import sqrt
+from math import atan, cos, exp, pi, sqrt
 from operator import attrgetter
 from typing import Any
 
@@ -494,6 +494,18 @@ def test_a_free_fall_is_no_blow_up_in_any_unit(unit: int) -> None:
         for members in (beside, each):
             assert members.block(np.array([500.0, 1000.0]))[-1, 0] == pytest.approx(unit * 5e5, rel=1e-12)
             assert not members.fates
+
+
+@pytest.mark.parametrize("method", ["dop853", "taylor"])
+def test_what_swings_ever_wider_is_followed(method: str) -> None:
+    """x = exp(3 t) cos(100 t), to 10^13 times its size: where x' = 0 the rate of x' is no escape."""
+    given = from_text(FALL.format(
+        name="ever wider", force="6*x_dot - 10009*x", unit=1, start="{position: 1, velocity: 3}"
+    ))  # fmt: skip
+    time = (318 * pi + atan(0.03)) / 100
+    found = run(given, time, method, estimate=False).trajectory
+    assert found.breakdown is None
+    assert found.states[0, -1] == pytest.approx(exp(3 * time) * cos(100 * time), rel=1e-4)
 
 
 @pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12], ids=str)
