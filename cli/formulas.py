@@ -25,16 +25,15 @@ class Kind:
     kind: str
     word: str
     example: str
+    there: str
     none: str
 
-    def names(self, system: System) -> tuple[str, ...]:
-        if self.kind == "coordinate":
-            return system.coordinates
-        return (*system.input_names, *(item.name for item in system.given))
 
-
-LAWS = Kind("--input", "input", "law", "u=sin(3*t)", "this description has no inputs; they are declared under 'inputs'")
-MOTIONS = Kind("--motion", "coordinate", "motion", "theta=sin(t)", "")
+LAWS = Kind(
+    "--input", "input", "law", "u=sin(3*t)", "laws are for",
+    "this description has no inputs; they are declared under 'inputs'",
+)  # fmt: skip
+MOTIONS = Kind("--motion", "coordinate", "motion", "theta=sin(t)", "the coordinates are", "")
 
 
 def read_formula(text: str, system: System, what: Kind, formulas: dict[str, Expression], options: Options) -> None:
@@ -45,11 +44,12 @@ def read_formula(text: str, system: System, what: Kind, formulas: dict[str, Expr
 
 
 def _read(text: str, system: System, what: Kind, complaints: Complaints, formulas: dict[str, Expression]) -> None:
-    from mbsym.source.laws import GIVEN_LAW, LAW, MOTION, read_law
+    from mbsym.source.laws import LAW, of_laws, of_motions, read_law
     from mbsym.source.scope import did_you_mean, listed
 
     left, equals, right = text.partition("=")
-    name, blanks, known = left.strip(), len(left) - len(left.lstrip()), what.names(system)
+    name, blanks = left.strip(), len(left) - len(left.lstrip())
+    known = (of_laws if what is LAWS else of_motions)(system)
     if not equals or not name or len(text) > MAX_LENGTH:
         reason = Message("this [[what]] is too long", what=worded(what.word))
         if len(text) <= MAX_LENGTH:
@@ -59,15 +59,13 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, formula
         return
     span = Span(1, blanks + 1, max(1, len(name)))
     if name not in known:
-        there = "the inputs are" if what is LAWS else "the coordinates are"
-        near = did_you_mean(name, known) or listed(there, known) or what.none
+        near = did_you_mean(name, known) or listed(what.there, known) or what.none
         words = "there is no [[kind]] called [[name]]"
         complaints.error("unknown-name", Message(words, kind=worded(what.kind), name=ascii_safe(name)), span, near)
     elif name in formulas:
         complaints.error("repeated-name", Message("[[name]] is given twice", name=f"'{name}'"), span)
     place = partial(in_line, offset=len(left) + 1)
-    kind = GIVEN_LAW if name not in system.input_names and what is LAWS else LAW if what is LAWS else MOTION
-    law = read_law(right, system, complaints, place, kind)
+    law = read_law(right, system, complaints, place, known.get(name, LAW))
     if law is not None and not complaints.errors:
         formulas[name] = law
 

@@ -37,11 +37,12 @@ from mbsym.problems.stability.verdict import Flaw, Verdict, concluded
 from mbsym.problems.stability.words import CHETAEV, LAGRANGE, Because, Fact, Ground, Reason, Word
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.analysis.pipeline import Analysis
     from mbsym.model.system import System
+    from mbsym.problems.displacements import Direction
 
 
 def by_energy_with_fewer_constraints(
@@ -76,30 +77,19 @@ def by_energy_with_fewer_constraints(
 
 
 def _drifts(analysis: Analysis, there: Analysis) -> bool:
-    """Whether constraints allow one of the constant displacements D that change nothing: J (c . D) = 0, c numbers.
+    """Whether constraints J q' = 0 leave free one of the constant displacements D that change nothing without them.
 
-    Then its momentum is constant (Noether), whatever it is.  At the rest alone it is not enough: y' = x x' bends x up.
-    Or q0 + e t D is a motion for every e: rows that do not change along D allow it at q0, and D^T M D is stationary.
+    Either  J (c . D) = 0  for numbers c, wherever it is: its momentum is constant then (Noether).  Or the system may
+    move evenly along D.  At the rest alone it is not enough: y' = x x' bends x up.
     """
     ring, names = there.ring, there.system.coordinates
+    found = there.balance.displacements(names)
     place = unperturbed_with(there.scene, relations(there.scene))
     carry = Carrier(analysis.ring, ring, ring_environment(there.system, ring))
-    found = there.balance.displacements(names)
-    fields = found.directions
     rows = [[carry(x) for x in row] for row in analysis.constraints.jacobian.polynomials]
-
-    def vanish(polynomials: Iterable[Polynomial]) -> bool:
-        return all(ring.is_zero(ring.reduce(x)) is True for x in polynomials)
-
-    still = fields[: found.constant]
-    allowed = ([ring.dot([ring.substitute(x, place) for x in row], one) for one in still] for row in rows)
-    for weights in kernel(ring, *allowed) if still else ():
-        along = [ring.dot(list(weights.values()), [still[k][i] for k in weights]) for i in range(len(names))]
-        inertia = ring.dot(along, [ring.dot(row, along) for row in there.equations.mass_matrix.polynomials])
-        changes = (ring.dot(along, [ring.derivative(x, name) for name in names]) for row in rows for x in row)
-        pulls = (ring.substitute(ring.derivative(inertia, name), place) for name in names)
-        if vanish(changes) and vanish(pulls):
-            return True
+    if _moves_evenly(there, rows, found.directions[: found.constant], place):
+        return True
+    fields = found.directions
     held = [[ring.reduce(ring.dot(row, one)).to_dict() for row in rows] for one in fields]
     terms = sorted({(r, key) for one in held for r, x in enumerate(one) for key in x})
     if not fields or fmpq_mat([[one[r].get(key, 0) for r, key in terms] for one in held]).rank() == len(fields):
@@ -107,6 +97,26 @@ def _drifts(analysis: Analysis, there: Analysis) -> bool:
     at_rest = [[ring.reduce(ring.substitute(x, place)) for x in one] for one in fields]
     chosen = combinations(zip(*at_rest, strict=True), len(fields))
     return any(ring.is_zero(ring.reduce(determinant(ring, list(map(list, some))))) is False for some in chosen)
+
+
+def _moves_evenly(
+    there: Analysis, rows: list[list[Polynomial]], fields: Sequence[Direction], place: Mapping[int, Polynomial]
+) -> bool:
+    """Whether q0 + e t D is a motion for every e: J D = 0 at q0, dJ = 0 along D, and D^T M D is stationary at q0."""
+    ring, names = there.ring, there.system.coordinates
+
+    def vanish(polynomials: Iterable[Polynomial]) -> bool:
+        return all(ring.is_zero(ring.reduce(x)) is True for x in polynomials)
+
+    allowed = ([ring.dot([ring.substitute(x, place) for x in row], one) for one in fields] for row in rows)
+    for weights in kernel(ring, *allowed) if fields else ():
+        along = [ring.dot(list(weights.values()), [fields[k][i] for k in weights]) for i in range(len(names))]
+        inertia = ring.dot(along, [ring.dot(row, along) for row in there.equations.mass_matrix.polynomials])
+        changes = (ring.dot(along, [ring.derivative(x, name) for name in names]) for row in rows for x in row)
+        pulls = (ring.substitute(ring.derivative(inertia, name), place) for name in names)
+        if vanish(changes) and vanish(pulls):
+            return True
+    return False
 
 
 def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool) -> Verdict | None:

@@ -238,20 +238,15 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
     body = short_listing(programs.program, nodes, inputs, DIALECT, FILE_PROGRAM)
     if body is None:
         return {"omitted": Writer().said(program_not_printed(programs.program, nodes))}
-    prescribed, known = {}, courses(system)
-    for item in system.prescribed:
-        if item.name in body.inputs:
-            prescribed[names[item.name]] = wolfram_expression(known[item.name], names) if not item.given else ""
+    known = {item.name: wolfram_expression(courses(system)[item.name], names) for item in system.of_constant_rate}
     for function in system.given:
-        for order, name in enumerate(function.names):
-            if names[name] in prescribed:
-                prescribed[names[name]] = f"{names[function.name]}{chr(39) * order}[t]"
+        known |= {name: f"{names[function.name]}{chr(39) * k}[t]" for k, name in enumerate(function.names)}
     return {
         "positions": [names[name] for name in system.coordinates],
         "velocities": [names[name] for name in system.velocities],
         "body": body,
         "locals": [name for name, _ in body.assignments],
-        "prescribed": prescribed,
+        "prescribed": {names[name]: value for name, value in known.items() if name in body.inputs},
         "mass": [body.results[i * n : (i + 1) * n] for i in range(n)],
         "forcing": body.results[n * n :],
         "omitted": "",

@@ -49,8 +49,17 @@ def read_laws(system: System, laws: Mapping[str, Expression | Fraction | float |
     Those of free functions of time are smooth ones in t, parameters and prescribed motions.  Raises ValueError with
     everything that is wrong.
     """
-    free = dict.fromkeys((item.name for item in system.given), GIVEN_LAW)
-    return _read(system, laws, dict.fromkeys(system.input_names, LAW) | free, "input")
+    return _read(system, laws, of_laws(system), "input")
+
+
+def of_laws(system: System) -> dict[str, Allowed]:
+    """By name what the law of an input, or of a free function of time, may hold."""
+    return dict.fromkeys(system.input_names, LAW) | dict.fromkeys((item.name for item in system.given), GIVEN_LAW)
+
+
+def of_motions(system: System) -> dict[str, Allowed]:
+    """By coordinate what a motion may hold."""
+    return dict.fromkeys(system.coordinates, MOTION)
 
 
 def read_motions(system: System, motions: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
@@ -60,7 +69,7 @@ def read_motions(system: System, motions: Mapping[str, Expression | Fraction | f
     motion included.
     """
     every = not (system.constraints and motions)
-    return _read(system, motions, dict.fromkeys(system.coordinates, MOTION), "coordinate", every)
+    return _read(system, motions, of_motions(system), "coordinate", every)
 
 
 def _read(

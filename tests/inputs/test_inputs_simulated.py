@@ -136,7 +136,7 @@ def test_the_command_complains_of_every_law(tmp_path: Path) -> None:
     words = ["--time", "1", "--set", "p=0", "--input", "G=1", "--input", "F=q", "--input", "F", "--out", str(tmp_path)]
     done = invoked("simulate", POLE, *words, code=2)
     assert "there is no input called 'G'" in done.stderr
-    assert "hint: the inputs are: F" in done.stderr
+    assert "hint: laws are for: F" in done.stderr
     assert "unknown name 'q'" in done.stderr
     assert "'F' gives no law" in done.stderr
     assert list(tmp_path.iterdir()) == []

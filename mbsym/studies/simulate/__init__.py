@@ -159,7 +159,12 @@ class Request:
     axes: Annotated[str, Text("X,Y", 'Of the section: "q2, q2_dot".', usual="the first free coordinate")] = ""
     inputs: Annotated[
         Mapping[str, Value] | None,
-        Formulas("NAME=LAW", 'An input of the file: "u=sin(3*t)"; repeatable.', name="--input", laws=True),
+        Formulas(
+            "NAME=LAW",
+            'The law of an input or a function of time: "u=sin(3*t)"; repeatable.',
+            name="--input",
+            laws=True,
+        ),
     ] = None
     variables: Annotated[
         str,
