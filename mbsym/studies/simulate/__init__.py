@@ -161,7 +161,7 @@ class Request:
         Mapping[str, Value] | None,
         Formulas(
             "NAME=LAW",
-            'The law of an input or a function of time: "u=sin(3*t)"; repeatable.',
+            'Law of an input or function: "u=sin(3*t)"; repeatable.',
             name="--input",
             laws=True,
         ),
