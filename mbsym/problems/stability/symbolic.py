@@ -49,6 +49,7 @@ from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, TooLargeError, message_of
 from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
+from mbsym.algebra.terms import coefficients_in
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.exact import PointVerdict, on_the_motion, verdict_at
@@ -514,9 +515,13 @@ def _requirements(
 
 def _without_following(requirements: Sequence[Requirement], signs: Signs) -> Iterator[Requirement]:
     """p > 0 goes without saying where another q > 0 is wanted and q >= 0 shows it: p < 0 is nowhere but where q < 0."""
+
+    def follows(q: Requirement, r: Requirement) -> bool:
+        return _following((q.condition.polynomial, ">="), r.condition.polynomial, signs) == "positive"
+
     standing = [r for r in requirements if _in_short(r)]
     for r in requirements:
-        by = next((q for q in standing if q is not r and _in_short(r) and _shows(q, r, signs)), None)
+        by = next((q for q in standing if q is not r and _in_short(r) and follows(q, r)), None)
         if by is not None:
             standing = [q for q in standing if q is not r]
             r = replace(r, condition=Condition("always", r.condition.polynomial * 0 + 1))
@@ -526,13 +531,6 @@ def _without_following(requirements: Sequence[Requirement], signs: Signs) -> Ite
 def _in_short(r: Requirement) -> bool:
     kind, terms = r.condition.kind, len(r.condition.polynomial)
     return kind == "inequality" and not r.condition.nonzero and r.place is not Place.HARMLESS and terms <= MOST_TERMS
-
-
-def _shows(q: Requirement, r: Requirement, known: Signs) -> bool:
-    try:
-        return known.assuming([(q.condition.polynomial, ">=")]).sign(r.condition.polynomial) == "positive"
-    except (ContradictionError, NoClosedForm):
-        return False
 
 
 def _is_symmetric(system: LinearSystem) -> bool:
@@ -597,31 +595,55 @@ def _without_implied(wanted_requirements: list[Requirement], known: Signs) -> li
     )
     requirements = []
     for r in wanted_requirements:
-        left = tuple(f for f in r.condition.nonzero if f in apart)
-        if r.condition.kind == "nonzero" and not left:
-            r = replace(r, condition=Condition("always", r.condition.polynomial))
-        elif left != r.condition.nonzero:
-            r = replace(r, condition=replace(r.condition, nonzero=left))
-        requirements.append(r)
+        requirements.append(_apart(r, [f for f in r.condition.nonzero if f in apart]))
     return requirements
 
 
+def _apart(r: Requirement, left: Sequence[Polynomial]) -> Requirement:
+    """The same requirement, its side conditions only those that are left."""
+    if r.condition.kind == "nonzero" and not left:
+        return replace(r, condition=Condition("always", r.condition.polynomial))
+    return r if tuple(left) == r.condition.nonzero else replace(r, condition=replace(r.condition, nonzero=tuple(left)))
+
+
 def _without_implications(case: Case, known: Signs) -> Case:
-    """Without p > 0 that another one of ``all_of`` implies, and without alternatives that imply another one."""
+    """Without p > 0 or f != 0 that another one of ``all_of`` implies, and without alternatives that imply another one.
+
+    An alternative needs no f != 0 where another one holds on f = 0.
+    """
     every, some = list(case.all_of), list(case.any_of)
     for k, r in enumerate(every):
         if any(_implies(other, r, known) for other in (*every[:k], *every[k + 1 :])):
             every[k] = replace(r, condition=Condition("always", r.condition.polynomial))
+    positive = [r.condition.polynomial for r in every if _is_inequality(r)]
+    every = [_without_sides(r, positive, ("negative", "nonpositive", "zero"), known) for r in every]
+    enough = [r.condition.polynomial for r in some if _is_inequality(r) and not r.condition.nonzero]
+    some = [_without_sides(r, enough, ("positive",), known) for r in some]
     for k, r in enumerate(some):
         if any(_implies(r, other, known) for other in (*some[:k], *some[k + 1 :])):
             some[k] = replace(r, condition=Condition("never", r.condition.polynomial))
     return replace(case, all_of=tuple(every), any_of=tuple(some))
 
 
+def _is_inequality(r: Requirement) -> bool:
+    return r.condition.kind == "inequality" and r.relation == ">"
+
+
+def _without_sides(r: Requirement, others: Sequence[Polynomial], words: Sequence[str], known: Signs) -> Requirement:
+    """Without f != 0, f a single letter, where one of the others has on f = 0 one of the signs."""
+
+    def told(f: Polynomial) -> bool:
+        if len(f) != 1 or f.total_degree() != 1:
+            return False
+        return any(known.sign(coefficients_in(p, occurring([f])[0])[0]) in words for p in others)
+
+    return _apart(r, [f for f in r.condition.nonzero if not told(f)])
+
+
 def _implies(one: Requirement, other: Requirement, known: Signs) -> bool:
-    """Whether p > 0 implies r > 0 as p = q r + s with q > 0, s <= 0: q is the ratio of their slopes in a variable."""
+    """Whether p > 0 implies r > 0: p = q r + s with q > 0, s <= 0, q the ratio of their slopes; or found by search."""
     p, r = one.condition, other.condition
-    if any(x.condition.kind != "inequality" or x.relation != ">" for x in (one, other)) or r.nonzero:
+    if not (_is_inequality(one) and _is_inequality(other)) or r.nonzero:
         return False
     if max(len(p.polynomial), len(r.polynomial)) > MOST_COMPARED:
         return False
@@ -633,7 +655,15 @@ def _implies(one: Requirement, other: Requirement, known: Signs) -> bool:
         rest = p.polynomial - quotient * r.polynomial
         if known.sign(quotient) == "positive" and known.sign(rest) in ("negative", "nonpositive", "zero"):
             return True
-    return False
+    return _following((p.polynomial, ">"), r.polynomial, known) == "positive"
+
+
+def _following(fact: tuple[Polynomial, str], p: Polynomial, known: Signs) -> str:
+    """The sign of p where the fact holds, too; "unknown" where nothing is proved."""
+    try:
+        return known.assuming([fact]).sign(p)
+    except (ContradictionError, NoClosedForm):
+        return "unknown"
 
 
 def _power_name(even: bool, i: int) -> str:

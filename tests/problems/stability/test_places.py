@@ -11,7 +11,7 @@ from terminal import told
 import mbsym
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Place
-from mbsym.report.conditions import statements
+from mbsym.report.conditions import cases, label_meanings, statements
 from mbsym.report.targets import TARGETS
 
 
@@ -78,6 +78,27 @@ def test_a_condition_that_another_one_implies_is_not_told() -> None:
     assert [str(x) for _, x, _ in top.subsystems[0].conditions] == ["C**2*Omega**2 - 4*A*m*l*g"]
     pair = mbsym.load(STATEMENTS.parents[2] / "systems" / "gyroscopic-pair.yaml").stability
     assert len(pair.subsystems[0].conditions) == 2  # g^2 - k1 - k2 is negative where g = 0
+
+
+def test_a_trap_has_one_condition() -> None:
+    """Penning's trap is stable across where q^2 B^2 > 2 m k (L. S. Brown, G. Gabrielse, Rev. Mod. Phys. 58, 1986):
+    neither B != 0 nor q^2 B^2 > m k is told beside it, and without a field it is unstable, too."""
+    trap = mbsym.loads("""
+mbsym: 1
+name: trap
+parameters: {m: positive, q: positive, B: real, k: positive}
+bodies: [{name: ion, attached to: 0, mass: m, connection point: [x, y, z], coordinates: [x, y, z]}]
+loads:
+  - potential: k*(2*z**2 - x**2 - y**2)/4
+  - generalized force: {x: q*B*y_dot, y: -q*B*x_dot}
+motion: {x: 0, y: 0, z: 0}
+""").stability
+    (part,) = [part for part in trap.subsystems if len(part.coordinates) == 2]
+    told = [
+        [str(x.formula) for x in (*case.all_of, *case.any_of)]
+        for case in cases(part.ring, part.theory.cases, label_meanings(part.ring, part.theory.requirements), False)
+    ]
+    assert told == [["q**2*B**2 - 2*m*k"], ["2*m*k - q**2*B**2"]]
 
 
 def test_what_stands_under_a_root_of_a_relation_is_not_negative() -> None:

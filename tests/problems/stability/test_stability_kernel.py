@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction as F
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -40,9 +41,9 @@ from mbsym.problems.stability import symbolic as theory
 from mbsym.problems.stability.exact import RationalPoint, evaluated, inertia, verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem, kind_of
 from mbsym.problems.stability.problem import _even
-from mbsym.problems.stability.requirements import Requirement, definiteness
+from mbsym.problems.stability.requirements import Case, Requirement, definiteness
 from mbsym.problems.stability.symbolic import Theory, _implies, _spared, _without_implied, analyse
-from mbsym.problems.stability.verdict import Verdict, combine
+from mbsym.problems.stability.verdict import Verdict, combine, depends
 from mbsym.problems.stability.words import Word
 
 Matrix = Any
@@ -1117,3 +1118,38 @@ def test_what_is_said_to_be_implied_is() -> None:
     a, b, _ = names
     known = signs(context, "real positive positive")
     assert not _implies(*(Requirement("r", p, known.condition(p)) for p in (a * (b - 2) - 1, b - 2)), known)
+
+
+@settings(60)
+@given(st.data())
+def test_cases_without_what_is_implied_hold_where_they_held(data: st.DataObject) -> None:
+    """At all points of a grid that has zeros: conditions that all have to hold, and alternatives, with their f != 0."""
+    context, names = ring("a b c")
+    known = signs(
+        context, data.draw(st.sampled_from(["real positive real", "nonnegative positive real", "real real real"]))
+    )
+    small = st.integers(-2, 2)
+
+    def required() -> Requirement:
+        weights = [data.draw(small) for _ in range(4)]
+        p = sum((w * x * x for w, x in zip(weights, names, strict=False)), context.constant(weights[3]))
+        p *= data.draw(st.sampled_from(names)) ** data.draw(st.sampled_from([0, 2]))
+        return Requirement("r", p, known.condition(p))
+
+    case = Case(*(tuple(required() for _ in range(3)) for _ in range(2)), depends())
+    left = theory._without_implications(case, known)
+    allowed = {
+        "positive": (F(1, 3), F(1), F(2)),
+        "nonnegative": (F(0), F(1), F(2)),
+        "real": (F(-2), F(-1, 2), F(0), F(1)),
+    }
+    for point in product(*(allowed[word] for word in known.words)):
+        values = [fmpq(x.numerator, x.denominator) for x in point]
+
+        def holds(r: Requirement, values: list[fmpq] = values) -> bool:
+            c = r.condition
+            true = {"always": True, "nonzero": True, "never": False}.get(c.kind)
+            return (c.polynomial(*values) > 0 if true is None else true) and all(f(*values) != 0 for f in c.nonzero)
+
+        assert all(map(holds, left.all_of)) == all(r.polynomial(*values) > 0 for r in case.all_of)
+        assert any(map(holds, left.any_of)) == any(r.polynomial(*values) > 0 for r in case.any_of)
