@@ -114,9 +114,9 @@ def _decided_at(
             stability = None if enclosed else analysis.stability
             return known if stability is None else stability.numerical or stability.verdict
         judge = Judge(analysis)
-        verdict = judge.decided(known, enclosed)
-        # The list knows fewer theorems of the first approximation than problem 6, and other words for what is open.
-        return judge(enclosed) if verdict.word.open and not enclosed and not bare.constraints else verdict
+        if enclosed or bare.constraints:
+            return judge.decided(known, enclosed)
+        return judge({})  # problem 6 knows symmetries that the list does not, and other words
     except (Failure, *NOT_THERE):
         return known
 
