@@ -46,8 +46,8 @@ from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.speed_states import in_time
-from mbsym.mechanics.states import are_met
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.states import are_met
 from mbsym.model.system import velocity_name
 from mbsym.problems.constraints.checks import moving
 from mbsym.problems.constraints.motion import Embedded, dependent_velocities
