@@ -324,3 +324,34 @@ def test_branches_are_judged_with_terms_of_higher_order() -> None:
     (interval,) = found.intervals
     assert [one.verdict.word for one in found.equilibria(interval)] == [Word.ASYMPTOTIC]
     assert [piece.throughout for piece in found.pieces] == [False]  # it is judged at the sample
+
+
+HINGE = """mbsym: 1
+name: a pendulum on a hinge that is tilted
+parameters: {al: real}
+bodies:
+  - {name: frame, rotation: {axes: [1], angles: [al]}, mass: 0}
+  - {name: p, attached to: frame, rotation: {axes: [3], angles: [q]}, mass centre: [0, -1, 0], mass: 1}
+loads: [{uniform gravity: {vector: [0, -1, 0]}}POTENTIAL]
+motion: {q: 0}
+values: {al: VALUE}
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "potential", "word"),
+    [
+        ("pi/2", "", DRIFTS),  # q'' + cos(al) sin(q) = 0, cos(pi/2) = 0: no force at all
+        ("pi/2", ", {potential: q**4}", Word.STABLE),
+        ("pi/2", ", {potential: -q**4}", Word.UNSTABLE),
+        ("pi/3", ", {potential: -q**4}", Word.STABLE),
+        ("2*pi/3", ", {potential: q**4}", Word.UNSTABLE),
+    ],
+)
+def test_what_vanishes_at_irrational_values_is_put_in(value: str, potential: str, word: Word) -> None:
+    system = mbsym.loads(HINGE.replace("VALUE", value).replace("POTENTIAL", potential)).system
+    found = Analysis(system, (6,)).stability.numerical
+    assert found is not None
+    assert found.word is word
+    listed = relative_equilibria(system, given_values(system, {}))
+    assert next(x for x in listed.equilibria if x.values[:1] == () or x.values[0].value == 0).verdict.word is word
