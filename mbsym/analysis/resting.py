@@ -114,7 +114,7 @@ def _decided_at(
             stability = None if enclosed else analysis.stability
             return known if stability is None else stability.numerical or stability.verdict
         judge = Judge(analysis)
-        if enclosed or bare.constraints:
+        if enclosed or any(map(known.because, _SINGULAR)):
             return judge.decided(known, enclosed)
         return judge({})  # problem 6 knows symmetries that the list does not, and other words
     except (Failure, *NOT_THERE):
@@ -123,6 +123,9 @@ def _decided_at(
 
 #: Why the list leaves open what the whole of problem 6 may decide, where constraints tie velocities.
 _KNOWN_BETTER = (Because.NO_EQUATIONS, Because.MORE_ZERO_ROOTS, Because.NEAR_BORDER)
+
+#: Where the constraints have another rank than near by.
+_SINGULAR = (Because.RANK_LOST, Because.OTHER_BRANCH)
 
 #: How names of parameters begin that are coordinates of a place; parameters of the description are numbers by then.
 _PLACE = "place_dot_"

@@ -270,6 +270,19 @@ FAMILIES = [
 ]
 
 
+def test_a_member_of_a_family_under_constraints_is_judged_by_its_symmetry() -> None:
+    """On a cylinder with a spring along it all is alike around the axis, which no coordinate is an angle about."""
+    text = FLAT.replace("[x, y, 0]", "[x, y, z]").replace("[x, y]}}", "[x, y, z]}}")
+    text = text.replace("motion:", "constraints: [relation: x**2 + y**2 = 1]\nmotion:").replace(
+        "y: {y}", "y: {y}, z: 0"
+    )
+    system = mbsym.loads(text.format(loads="potential: z**2/2", x="-4/5", y="3/5")).system
+    (family,) = relative_equilibria(system, {}).families
+    found = Analysis(system, (6,)).stability.numerical
+    assert found is not None
+    assert found.word is family.verdict.word is DRIFTS
+
+
 @pytest.mark.parametrize(("load", "count", "words"), FAMILIES)
 def test_members_of_families_are_judged_as_the_description_would_be_there(
     load: str, count: int, words: set[Word]
