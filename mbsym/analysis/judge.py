@@ -35,6 +35,7 @@ from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
+from mbsym.mechanics.rest import at_numbers, given_values, missing_values
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest, displaced
 from mbsym.model.system import System
@@ -129,7 +130,24 @@ class Judge:
             if not (whole.word.open and self.may_add(whole)):
                 break
             whole = further(values) or whole
+        if whole.word.open and self.may_add(whole) and not all(isinstance(x, Fraction) for x in values.values()):
+            exact = self._at_its_numbers
+            further_verdict = None if exact is None else exact({})
+            if further_verdict is not None and not further_verdict.word.open:
+                return further_verdict
         return whole
+
+    @cached_property
+    def _at_its_numbers(self) -> Judge | None:
+        """Of the description's own values, of which some are irrational: cos(pi/2) is 0 where it is put in."""
+        system = self.analysis.system
+        values = given_values(system, {})
+        if {*missing_values(system, values)}:
+            return None
+        try:
+            return Judge(type(self.analysis)(at_numbers(system, values, places=True), (), self.analysis.terms))
+        except (Failure, KeyError, *NOT_THERE):
+            return None
 
     def _apart(self, values: Mapping[str, Any]) -> Verdict | None:
         """What is said of parts of the equations that know no others; None where that is open, too."""

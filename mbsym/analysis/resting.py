@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any, TypeVar
 
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
-from mbsym.analysis import higher
+from mbsym.algebra.rationals import fraction
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.stages import Unavailable
-from mbsym.expressions.tree import Expression, Name, multiply, number
+from mbsym.expressions.tree import Expression, Name, multiply, names, number
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Value, at_numbers
 from mbsym.model.substitution import with_free_rates
 from mbsym.model.system import MotionEntry, Parameter, System
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
-from mbsym.problems.relative_equilibria.listing import CoordinateValue, RelativeEquilibrium
+from mbsym.problems.relative_equilibria.listing import (
+    ELSEWHERE,
+    CoordinateValue,
+    EquilibriumFamily,
+    RelativeEquilibrium,
+    also_elsewhere,
+)
 from mbsym.problems.relative_equilibria.verdict import MOST_COORDINATES
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Because
+
+Listed = TypeVar("Listed", RelativeEquilibrium, EquilibriumFamily)
 
 
 def relative_equilibria(system: System, values: Mapping[str, Value], within: float = WITHIN) -> Equilibria:
@@ -37,30 +47,59 @@ def relative_equilibria(system: System, values: Mapping[str, Value], within: flo
 
 
 def judged(system: System, values: Mapping[str, Value], candidates: Equilibria) -> Equilibria:
-    """Verdicts at isolated places that are open, or rest on an energy that may fall, judged further."""
+    """Verdicts that are open, or rest on an energy that may fall, judged further: of families at their samples."""
     if not installed("mbsym.problems.normal_forms") or len(system.coordinates) > MOST_COORDINATES:
         return candidates
     bare = at_numbers(system, values)
     judge = Judge(Analysis(bare, ()))
-    listed = (
-        _decided(bare, equilibrium)
-        if equilibrium.verdict.word.open or judge.may_add(equilibrium.verdict)
-        else equilibrium
-        for equilibrium in candidates.equilibria
+
+    def further(listed: Sequence[Listed]) -> tuple[Listed, ...]:
+        return tuple(
+            replace(one, verdict=_decided(bare, one))
+            if not one.coordinates_of and (one.verdict.word.open or judge.may_add(one.verdict))
+            else one
+            for one in listed
+        )
+
+    return replace(candidates, equilibria=further(candidates.equilibria), families=further(candidates.families))
+
+
+def _decided(bare: System, listed: RelativeEquilibrium | EquilibriumFamily) -> Verdict:
+    """The verdict there; where any value of some coordinates will do at 0 of them, and in samples elsewhere."""
+    known = listed.verdict
+    if isinstance(listed, EquilibriumFamily):
+        return _decided_at(bare, listed.sample, listed.enclosures, known)
+    free = () if bare.constraints or not listed.free else _telling(bare, listed.free)
+    if not free:
+        return known if bare.constraints and listed.free else _decided_at(bare, listed.values, listed.enclosures, known)
+    at_zero, *others = (
+        _decided_at(bare, (*listed.values, *(_sampled(bare, name, t) for name in free)), listed.enclosures, known)
+        for t in (Fraction(0), *map(fraction, ELSEWHERE))
     )
-    return replace(candidates, equilibria=tuple(listed))
+    return also_elsewhere(at_zero, {other.word for other in others}, free)
 
 
-def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibrium:
-    """Coordinates without an exact text are parameters that are known by their enclosures."""
-    if equilibrium.coordinates_of:
-        return equilibrium
-    enclosed = {
-        f"{_PLACE}{x.name}": equilibrium.enclosures[x.name]
-        for x in equilibrium.values
-        if not x.exact and x.name in bare.coordinates
-    }
-    places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in equilibrium.values}
+def _telling(bare: System, free: Collection[str]) -> tuple[str, ...]:
+    """The coordinates of which the equations of motion know more than that any value is one of rest."""
+    try:
+        unseen = Analysis(bare, ()).balance.ignorable
+    except (Failure, *NOT_THERE):
+        unseen = ()
+    return tuple(name for name in free if name not in unseen)
+
+
+def _sampled(bare: System, name: str, t: Fraction) -> CoordinateValue:
+    """t, or t pi/12 of an angle."""
+    angle = any(name in names(x) for body in bare.bodies for _, x in body.rotation.turns())
+    return CoordinateValue(name, str(t), float(t) * math.pi / 12 if angle else float(t), angle, True)
+
+
+def _decided_at(
+    bare: System, values: Sequence[CoordinateValue], enclosures: Mapping[str, Any], known: Verdict
+) -> Verdict:
+    """The verdict at one place; coordinates without an exact text are parameters known by their enclosures."""
+    enclosed = {f"{_PLACE}{x.name}": enclosures[x.name] for x in values if not x.exact and x.name in bare.coordinates}
+    places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in values}
     described = {entry.coordinate for entry in bare.motion}
     follow = {name for name, velocity in zip(bare.coordinates, bare.velocities, strict=True) if velocity in places}
     motion = tuple(
@@ -71,22 +110,22 @@ def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibr
     there = replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed)))
     analysis = Analysis(with_free_rates(there) if bare.constraints else there, ())
     try:
-        if any(map(equilibrium.verdict.because, _KNOWN_BETTER)) and bare.constraints:
+        if any(map(known.because, _KNOWN_BETTER)) and bare.constraints:
             stability = None if enclosed else analysis.stability
-            return (
-                equilibrium
-                if stability is None
-                else replace(equilibrium, verdict=stability.numerical or stability.verdict)
-            )
-        if (bare.constraints and equilibrium.free) or not {*equilibrium.free} <= higher.ignorable(analysis)[1]:
-            return equilibrium
-        return replace(equilibrium, verdict=Judge(analysis).decided(equilibrium.verdict, enclosed))
+            return known if stability is None else stability.numerical or stability.verdict
+        judge = Judge(analysis)
+        if enclosed or any(map(known.because, _SINGULAR)):
+            return judge.decided(known, enclosed)
+        return judge({})  # problem 6 knows symmetries that the list does not, and other words
     except (Failure, *NOT_THERE):
-        return equilibrium
+        return known
 
 
 #: Why the list leaves open what the whole of problem 6 may decide, where constraints tie velocities.
 _KNOWN_BETTER = (Because.NO_EQUATIONS, Because.MORE_ZERO_ROOTS, Because.NEAR_BORDER)
+
+#: Where the constraints have another rank than near by.
+_SINGULAR = (Because.RANK_LOST, Because.OTHER_BRANCH)
 
 #: How names of parameters begin that are coordinates of a place; parameters of the description are numbers by then.
 _PLACE = "place_dot_"

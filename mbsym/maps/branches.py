@@ -29,6 +29,7 @@ from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compa
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.rationals import fraction
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.analysis.resting import judged
 from mbsym.expressions.message import Message
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, curves, joined
@@ -82,6 +83,9 @@ def branches(
     def listed(p: fmpq) -> Equilibria:
         return equilibria(system, {**values, axis.name: fraction(p)}, limits=bounds, rank=rank)
 
+    def judged_at(p: fmpq) -> Equilibria:
+        return judged(system, {**values, axis.name: fraction(p)}, listed(p))
+
     tried = [] if count_proved else _changes(listed, *ends(axis), numbers)
     numbers = ascending([*numbers, *tried])
     line = divided(*ends(axis), [(x, ()) for x in numbers])
@@ -103,7 +107,7 @@ def branches(
         for k, interval in enumerate(line.intervals):
             watch("samples", k, len(regions))
             sample = _sample(interval, line)
-            sampled = listed(sample)
+            sampled = judged_at(sample)
             remarks += _of_sample(sampled, fraction(sample))
             at_lost = any(x.verdict.because(Because.RANK_LOST) for x in sampled.equilibria)
             constant = count_proved and sampled.complete and not sampled.families and not at_lost
@@ -117,7 +121,7 @@ def branches(
                 continue
             meetings, reason, singular = _meetings(parts, number)
             if meetings is not None and isinstance(number, fmpq):
-                meetings = _judged(meetings, listed(number))
+                meetings = _judged(meetings, judged_at(number))
             if reason:
                 remarks.append(Remark(Doubt.UNCOUNTED, f"{short(number)}: {reason}"))
             border = singular or _among(number, [*leaving.continua, *(x.number for x in leaving.points)])

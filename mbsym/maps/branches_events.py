@@ -312,6 +312,8 @@ def _polynomial(curve: Curve, coefficients: object) -> bool:
 def decided_throughout(interval: Cell, number: int, solved: bool, undamped: bool, bounded: bool) -> bool:
     """Whether the verdict at the sample is proved for the whole interval.
 
+    What terms of higher order or integrals decide at the sample is not: their conditions are not solved.
+
     ``solved``: all changes of stability are solved; ``undamped``: D = 0 everywhere, so that the inertia of K decides
     what Lagrange, Dirichlet, Kelvin and Chetaev's theorems say; ``bounded``: the energy grows for no value of the
     parameter, by forces of higher order neither.
@@ -319,7 +321,7 @@ def decided_throughout(interval: Cell, number: int, solved: bool, undamped: bool
     if interval.counted is None or interval.certainty is not Certainty.PROVED:
         return False
     verdict = interval.counted.equilibria[number].verdict
-    if verdict.word.open or not (bounded or BY_ENERGY.isdisjoint(verdict.theorems)):
+    if verdict.word.open or verdict.beyond_linear or not (bounded or BY_ENERGY.isdisjoint(verdict.theorems)):
         return False
     return solved or (undamped and verdict.theorem in BY_INERTIA)
 

@@ -70,11 +70,11 @@ def missing_values(system: System, values: Mapping[str, Value]) -> tuple[str, ..
     return tuple(x for x in system.parameter_names if x in needed and x not in values and x not in dependent)
 
 
-def at_numbers(system: System, values: Mapping[str, Value]) -> System:
+def at_numbers(system: System, values: Mapping[str, Value], places: bool = False) -> System:
     """The system with numbers in place of its parameters; a relation decides about its own left side.
 
-    Of the unperturbed motion only the rates stay, and where constraints begin.  Raises KeyError where a number is
-    missing.
+    Of the unperturbed motion only the rates stay but for ``places``, and where constraints begin.  Raises KeyError
+    where a number is missing.
     """
     dependent = {item.name: item.value for item in system.relations}
     numbers: dict[str, Expression] = {
@@ -89,7 +89,7 @@ def at_numbers(system: System, values: Mapping[str, Value]) -> System:
             raise KeyError(", ".join(pending))
         for name in ready:
             numbers[name] = _folded(substitute(pending.pop(name), numbers))
-    turning = tuple(replace(entry, value=ZERO) for entry in system.motion)
+    turning = system.motion if places else tuple(replace(entry, value=ZERO) for entry in system.motion)
     # Constraints have the rank of the branch on which the description begins.
     on_motion = tuple(InitialValue(entry.coordinate, entry.value, entry.rate) for entry in system.motion)
     begun = (system.initial or on_motion) if system.constraints else ()

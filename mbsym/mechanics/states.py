@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 SEED = 1788
 #: So many draws look for numbers that keep the assumptions.
 ATTEMPTS = 100
+#: Then so many multiples of the numbers that the description gives.
+MULTIPLES = 5
 
 
 #: Of numbers so fine one state tells more than several of coarse ones: a polynomial of total degree d that is not zero
@@ -38,18 +40,36 @@ FINE = 1 << 40
 def drawn(system: System, ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
     """Between 1/24 and 40, quotients of multiples of 1/``fine``, of declared sign and as the assumptions have it.
 
-    Where no such numbers are met those that the description gives are taken, and others as they come.
+    Where no such numbers are met multiples of those that the description gives are taken, or these, and others as they
+    come.
     """
-    for attempt in range(ATTEMPTS):
+    values, declared = _met(system, ring, source, fine)
+    return values | {name: x for name, x in declared.items() if x is not None}
+
+
+def are_met(system: System, ring: Ring) -> bool:
+    """Whether random numbers keep the assumptions: else what vanishes at all states need not vanish elsewhere."""
+    return not _met(system, ring, random.Random(SEED))[1]
+
+
+def _met(
+    system: System, ring: Ring, source: random.Random, fine: int = 1
+) -> tuple[dict[str, fmpq], dict[str, fmpq | None]]:
+    """Random numbers, and the description's own where no others that keep the assumptions were met."""
+    declared_values = {symbol.name: rational(symbol.value) for symbol in system.parameters}
+    declared = {name: None if x is None else rationals.exact(x) for name, x in declared_values.items()}
+    for attempt in range(ATTEMPTS + MULTIPLES):
         values = {name: fmpq(source.randint(fine, 40 * fine), source.randint(fine, 24 * fine)) for name in ring.names()}
         for parameter in system.parameters:
             flipped = parameter.sign in ("negative", "nonpositive")
             if flipped or (attempt and parameter.sign in ("real", "nonzero") and source.randrange(2)):
                 values[parameter.name] = -values[parameter.name]
+        if attempt >= ATTEMPTS:  # what is true of quotients alone, as a = b, leaves no other numbers
+            factor = fmpq(source.randint(fine, 40 * fine), source.randint(fine, 24 * fine))
+            values |= {name: x * factor for name, x in declared.items() if x is not None}
         if not system.assumptions or is_allowed(system, Rationals({}, {}), values):
-            return values
-    declared_values = {symbol.name: rational(symbol.value) for symbol in system.parameters}
-    return values | {name: rationals.exact(x) for name, x in declared_values.items() if x is not None}
+            return values, {}
+    return values, declared
 
 
 def is_allowed(system: System, numbers: Algebra[Any], values: Mapping[str, Any]) -> bool:

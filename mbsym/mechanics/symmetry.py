@@ -112,7 +112,10 @@ def _is_internal(load: Load, hidden: set[str]) -> bool:
 
 @dataclass(frozen=True)
 class Reflection:
-    """``length`` and ``angle`` are polar coordinates; ``same_forces``: the equations of motion do not change."""
+    """``length`` and ``angle`` are polar coordinates, or two spherical angles, of which the first may be negated.
+
+    ``same_forces``: the equations of motion do not change.
+    """
 
     length: str
     angle: str
@@ -120,25 +123,37 @@ class Reflection:
 
 
 def reflections(rest: Rest) -> tuple[Reflection, ...]:
-    """The pairs of polar coordinates of a system, proved in the ring; a length that belongs to two angles once."""
+    """The pairs of polar coordinates of a system, proved in the ring; a length that belongs to two angles once.
+
+    So are pairs of angles where nothing changes at -theta, psi + pi.
+    """
     ring, names = rest.ring, rest.system.coordinates
     angles = [x for x in names if ring.angles.get(x) == 1]
     made = []
-    for length in (x for x in rest.constant if x not in ring.angles):
+    for length in rest.constant:
+        if length in ring.angles and length not in angles:
+            continue
         for angle in angles:
             try:
-                if _moves_nothing(rest, length, angle) and _same_places(rest, length, angle):
-                    made.append(Reflection(length, angle, _same_forces(rest, length, angle)))
-                    break
+                if angle != length and _moves_nothing(rest, length, angle) and _same_places(rest, length, angle):
+                    found = Reflection(length, angle, _same_forces(rest, length, angle))
+                    if found.same_forces or length not in angles:
+                        made.append(found)
+                        break
             except NOT_THERE:
                 continue
     return tuple(made)
 
 
+def odd_in(ring: Ring, length: str) -> list[tuple[str, str]]:
+    """The generators, by kind and name, that change their sign with a length, or with an angle in its place."""
+    return [(kind, length) for kind in ("coordinate", "velocity", "sine") if ring.has(kind, length)]
+
+
 def reflected(rest: Rest, x: Polynomial, length: str, angle: str) -> Polynomial:
     """x at -r, theta + pi, -r'."""
     ring = rest.ring
-    places = (("coordinate", length), ("velocity", length), ("sine", angle), ("cosine", angle))
+    places = (*odd_in(ring, length), ("sine", angle), ("cosine", angle))
     return ring.substitute(x, {ring.index(*place): -ring.generator(*place) for place in places})
 
 
@@ -146,7 +161,9 @@ def _moves_nothing(rest: Rest, length: str, angle: str) -> bool:
     """Whether the row of ``angle`` in the mass matrix vanishes where the length does, and not everywhere."""
     ring = rest.ring
     row = rest.mass_matrix()[rest.system.coordinates.index(angle)]
-    zero = {ring.index("coordinate", length): ring.zero}
+    zero = {ring.index(*place): ring.zero for place in odd_in(ring, length)}
+    if length in ring.angles:
+        zero[ring.index("cosine", length)] = ring.one
     return all(ring.substitute(x, dict(zero)).is_zero() for x in row) and any(not x.is_zero() for x in row)
 
 

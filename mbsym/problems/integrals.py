@@ -58,7 +58,7 @@ from mbsym.formulas.formula import Formula, Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated
-from mbsym.mechanics.states import ball_states, rational_states
+from mbsym.mechanics.states import are_met, ball_states, rational_states
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import INERTIAL, System, acceleration_name
 from mbsym.problems.energy import Energy
@@ -326,8 +326,8 @@ def _momenta(
             candidate = (kind, axis) in conserved and _is_new(scene.ring, formula, others)
             if candidate and is_conserved(scene, equations, formula):
                 status = Certainty.PROVED if is_proved(scene, equations, formula) else Certainty.VERIFIED
-                if status is Certainty.VERIFIED and scene.ring.kinked:
-                    continue  # a force that comes late vanishes at every state before
+                if status is Certainty.VERIFIED and (scene.ring.kinked or not are_met(scene.system, scene.ring)):
+                    continue  # a force that comes late vanishes at every state before, a difference where it is told
                 momenta.append(
                     Integral(momentum_title(kind, axis), kind, str(axis), Formula(scene.ring, formula), status)
                 )

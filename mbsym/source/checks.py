@@ -15,6 +15,7 @@ from mbsym.expressions.message import Message, joined
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import (
     ONE,
+    ZERO,
     Call,
     Derivation,
     Expression,
@@ -42,6 +43,7 @@ from mbsym.model.admissibility import (
     symbolic_violation,
 )
 from mbsym.model.assumptions import broken, contradictory
+from mbsym.model.substitution import folded
 from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
@@ -411,9 +413,17 @@ _OF_NEGATIVE = Message("with the given signs this is no real number: its argumen
 
 
 def _check_roots(system: System, known: Mapping[str, Any], reading: Reading) -> None:
-    """Roots and logarithms of constants are real, by the signs of the parameters and by their values."""
+    """Roots and logarithms of constants are real, by the signs of the parameters and by their values.
+
+    So are those that hold coordinates, on the unperturbed motion.
+    """
     signs = {parameter.name: parameter.sign for parameter in system.parameters}
-    held = (system.bodies, system.loads, system.constraints, system.linear)
+    rest = {} if system.constraints or not system.motion else dict.fromkeys(system.coordinates, ZERO)
+    places = rest | {entry.coordinate: entry.value for entry in system.motion}
+    for entry in system.motion:
+        if entry.rate != ZERO:
+            del places[entry.coordinate]
+    held = (system.bodies, system.loads, system.constraints, system.linear, system.relations, system.assumptions)
     roots: dict[Span | None, tuple[Expression, Expression]] = {}
     for node in _nodes(held):
         if isinstance(node, Call) and node.function in ("sqrt", "log"):
@@ -424,10 +434,18 @@ def _check_roots(system: System, known: Mapping[str, Any], reading: Reading) -> 
         if not names(root):
             continue  # it has been judged where it stands
         if sign_by_structure(argument, signs) == "negative":
-            reading.error("no-number", _OF_NEGATIVE, span)
+            reading.error("no-number", _OF_NEGATIVE, span, "change the argument, or the signs that are declared")
         elif names(root) <= known.keys() and (nothing := meaningless(root, known)) is not None and nothing[0] is root:
             message = Message("with the given values this is no real number: [[why]]", why=nothing[1])
             reading.error("no-number", message, span)
+        elif moved := sorted(names(argument) & places.keys()):
+            there = folded(argument, places)
+            value = value_of(there, known)
+            if sign_by_structure(there, signs) == "negative" or (value is not None and value < 0):
+                where = ", ".join(f"{name} = {text(places[name])}" for name in moved)
+                sentence = "on the motion this is no real number: its argument is negative at [[where]]"
+                message = Message(sentence, where=where)
+                reading.error("no-number", message, span, "give a motion, or values, for which it is positive")
 
 
 def _is_whole(exponent: Expression) -> bool:

@@ -248,6 +248,8 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
     fields = reading.fields(
         entry.value, Message("the small parameter [[name]]", name=ascii_safe(name)), SMALL_PARAMETER, HINT
     )
+    if not isinstance(entry.value, Mapping):  # the name is not what is wrong
+        return None
     powers_node = fields.get("powers")
     powers = () if powers_node is None else tuple(_powers(powers_node, name, reading, used))
     if powers_node is None:

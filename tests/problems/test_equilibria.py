@@ -892,3 +892,45 @@ def test_nothing_is_said_where_a_damper_is_infinite(power: int) -> None:
         "motion: {}\n"
     ).equilibria
     assert [rest.verdict.word.open for rest in found.equilibria] == [True]
+
+
+SWUNG = """mbsym: 1
+name: a body that swings and is turned
+parameters: {W: positive}
+PRESCRIBED
+bodies: [BODY]
+loads: [{uniform gravity: {vector: [0, 0, -1]}}]
+MOTION
+values: {W: 2}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "prescribed", "thetas"),
+    [
+        # a bob: -theta and psi + pi are the same place
+        ("mass: 1, rotation: {axes: [3, 1], angles: [psi, theta]}, mass centre: [0, 0, -1]", False, ["pi/3"]),
+        # written as a place
+        ("mass: 1, connection point: [sin(theta)*cos(psi), sin(theta)*sin(psi), -cos(theta)]", False, ["pi/3"]),
+        # a box that hangs on a universal joint is turned about its own axis by half a turn; 2 cos(theta) (1 - 1/4) = 1
+        (
+            "mass: 1, rotation: {axes: [3, 1], angles: [psi, theta]}, mass centre: [0, 0, -1], "
+            "inertia about: mass centre, inertia: [1/2, 1/3, 1/4]",
+            False,
+            [0.0, 0.0],
+        ),
+        # a bead on a hoop that is driven: at one time two places
+        ("mass: 1, rotation: {axes: [3, 1], angles: [psi, theta]}, mass centre: [0, 0, -1]", True, ["pi/3", "-pi/3"]),
+    ],
+)
+def test_one_place_is_counted_once(body: str, prescribed: bool, thetas: list[object]) -> None:
+    """W^2 cos(theta) = 1, W^2 = 2, of a bob at the end of a rod of length 1."""
+    moving = "motion: {theta: 0}" if prescribed else "motion: {psi: {value: 0, rate: sqrt(2)}, theta: 0}"
+    names = "theta" if prescribed else "psi, theta"
+    text = SWUNG.replace("BODY", f"{{name: p, {body}, coordinates: [{names}]}}").replace("MOTION", moving)
+    text = text.replace("PRESCRIBED", "prescribed: {psi: {rate: sqrt(2)}}" if prescribed else "")
+    found = relative_equilibria(mbsym.loads(text.replace("W: positive", "").replace("values: {W: 2}", "")).system, {})
+    tilted = [x.text for one in found.equilibria for x in one.values if x.name == "theta" and x.text not in ("0", "pi")]
+    assert len(tilted) == len(thetas)
+    if isinstance(thetas[0], str):
+        assert tilted == thetas

@@ -14,8 +14,10 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.expressions.tree import substitute
+from mbsym.maps.axis import Axis
+from mbsym.maps.branches import branches
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Because, Word
 
 PLANE = """mbsym: 1
 name: a particle in a plane
@@ -247,3 +249,122 @@ def test_a_rate_is_the_same_as_a_number_and_as_a_parameter(name: str) -> None:
     assert motion != system.motion
     word = Analysis(replace(system, motion=motion)).stability.numerical.word
     assert word is Analysis(system).stability.numerical.word
+
+
+FLAT = """mbsym: 1
+name: a particle in a plane, wherever it rests
+bodies:
+  - {{name: p, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}}
+loads: [{loads}]
+motion: {{x: {x}, y: {y}}}
+"""
+FIELD = "generalized force: {x: (B)*y_dot, y: -(B)*x_dot}"
+DRIFTS = Word.STABLE_BUT_CYCLIC
+
+#: V = x^2 y^2: y = y0 + e t, x = 0 is a motion, and y is no symmetry.  (x^2 + y^2 - 1)^2: it coasts around the circle,
+#: the angle is cyclic; sums of squares of x alone: y is cyclic.
+FAMILIES = [
+    ("potential: x**2*y**2", 2, {Word.UNSTABLE}),
+    ("potential: (x**2 + y**2 - 1)**2 + x**2*y**2", 0, set()),
+    ("potential: x**2*(1 + y**2)", 1, {Word.UNSTABLE}),
+]
+
+
+def test_a_member_of_a_family_under_constraints_is_judged_by_its_symmetry() -> None:
+    """On a cylinder with a spring along it all is alike around the axis, which no coordinate is an angle about."""
+    text = FLAT.replace("[x, y, 0]", "[x, y, z]").replace("[x, y]}}", "[x, y, z]}}")
+    text = text.replace("motion:", "constraints: [relation: x**2 + y**2 = 1]\nmotion:").replace(
+        "y: {y}", "y: {y}, z: 0"
+    )
+    system = mbsym.loads(text.format(loads="potential: z**2/2", x="-4/5", y="3/5")).system
+    (family,) = relative_equilibria(system, {}).families
+    found = Analysis(system, (6,)).stability.numerical
+    assert found is not None
+    assert found.word is family.verdict.word is DRIFTS
+
+
+@pytest.mark.parametrize(("load", "count", "words"), FAMILIES)
+def test_members_of_families_are_judged_as_the_description_would_be_there(
+    load: str, count: int, words: set[Word]
+) -> None:
+    listed = relative_equilibria(mbsym.loads(FLAT.format(loads=load, x=0, y=0)).system, {})
+    assert len(listed.families) == count
+    assert {family.verdict.word for family in listed.families} == words
+    for family in listed.families:
+        x, y = ({value.name: value.text for value in family.sample}[name] for name in "xy")
+        there = Analysis(mbsym.loads(FLAT.format(loads=load, x=x, y=y)).system, (6,)).stability.numerical
+        assert there is not None
+        assert there.word is family.verdict.word
+
+
+@pytest.mark.parametrize(
+    ("load", "x", "word"),
+    [
+        # x' -> 0 like t^(-1/2), and x -> infinity
+        ("generalized force: {x: -x_dot**3}", "0", DRIFTS),
+        # T and y' + A(x), A' = B, are constant: x keeps near wherever it rests, A is nowhere constant; y drifts
+        (FIELD.replace("B", "1 + x"), "0", DRIFTS),
+        (FIELD.replace("B", "1 + x"), "-1", DRIFTS),
+        (FIELD.replace("B", "x**3"), "0", DRIFTS),
+        # Nothing holds it where the field is that of no potential energy and knows both coordinates, or is none
+        (FIELD.replace("B", "1 + x*y"), "0", Word.CRITICAL),
+        (FIELD.replace("B", "x*y"), "0", Word.UNDECIDED),
+    ],
+)
+def test_any_position_is_one_of_rest(load: str, x: str, word: Word) -> None:
+    """What is said of all positions holds at each: at a zero of the field linear equations grow."""
+    system = mbsym.loads(FLAT.format(loads=load, x=x, y=0)).system
+    found = Analysis(system, (6,)).stability.numerical
+    assert found is not None
+    assert found.word is word
+    (listed,) = relative_equilibria(system, {}).equilibria
+    assert {"x", "y"} == {*listed.free}
+    if word is DRIFTS:
+        assert listed.verdict.word is word
+    else:
+        assert listed.verdict.word in (word, Word.UNDECIDED)
+        assert listed.verdict.because(Because.ALSO_ELSEWHERE) or listed.verdict.because(Because.DIFFERS_ALONG)
+
+
+def test_branches_are_judged_with_terms_of_higher_order() -> None:
+    """x'' + a x + x'^3 = 0: E' = -x'^4, only x' = 0 keeps E."""
+    cubic = mbsym.loads(
+        "mbsym: 1\nname: c\nparameters: {a: positive}\n"
+        "bodies: [{name: p, connection point: [x, 0, 0], mass: 1, coordinates: [x]}]\n"
+        "loads: [{spring: {coordinate: x, stiffness: a}}, {rayleigh: x_dot**4/4}]\nmotion: {x: 0}\n"
+    ).system
+    found = branches(cubic, Axis("a", Fraction(1, 2), Fraction(2)), {})
+    (interval,) = found.intervals
+    assert [one.verdict.word for one in found.equilibria(interval)] == [Word.ASYMPTOTIC]
+    assert [piece.throughout for piece in found.pieces] == [False]  # it is judged at the sample
+
+
+HINGE = """mbsym: 1
+name: a pendulum on a hinge that is tilted
+parameters: {al: real}
+bodies:
+  - {name: frame, rotation: {axes: [1], angles: [al]}, mass: 0}
+  - {name: p, attached to: frame, rotation: {axes: [3], angles: [q]}, mass centre: [0, -1, 0], mass: 1}
+loads: [{uniform gravity: {vector: [0, -1, 0]}}POTENTIAL]
+motion: {q: 0}
+values: {al: VALUE}
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "potential", "word"),
+    [
+        ("pi/2", "", DRIFTS),  # q'' + cos(al) sin(q) = 0, cos(pi/2) = 0: no force at all
+        ("pi/2", ", {potential: q**4}", Word.STABLE),
+        ("pi/2", ", {potential: -q**4}", Word.UNSTABLE),
+        ("pi/3", ", {potential: -q**4}", Word.STABLE),
+        ("2*pi/3", ", {potential: q**4}", Word.UNSTABLE),
+    ],
+)
+def test_what_vanishes_at_irrational_values_is_put_in(value: str, potential: str, word: Word) -> None:
+    system = mbsym.loads(HINGE.replace("VALUE", value).replace("POTENTIAL", potential)).system
+    found = Analysis(system, (6,)).stability.numerical
+    assert found is not None
+    assert found.word is word
+    listed = relative_equilibria(system, given_values(system, {}))
+    assert next(x for x in listed.equilibria if x.values[:1] == () or x.values[0].value == 0).verdict.word is word

@@ -505,6 +505,8 @@ def test_a_joint_s_name_stands_once_in_urdf_and_a_floating_joint_s_damping_is_to
     assert "repeated-name" in [code for code, _ in complaints_of(text)]
     free = PENDULUM.replace('type="revolute"', 'type="floating"')
     assert "damping of a floating joint" in converted(free).left_out
+    without = 'xyz="0 1 0"', 'xyz="0 0 0"'  # of the axis, which urdfdom reads of no floating joint
+    assert converted(free.replace(*without)).yaml == converted(free).yaml
     follows = free.replace("</joint>", '<mimic joint="pivot"/></joint>', 1)
     assert "mimicry of a floating joint" in converted(follows).left_out
     loop = PENDULUM.replace("</robot>", '<loop_joint name="l" type="revolute"/></robot>')
@@ -733,6 +735,13 @@ def test_armature_is_a_term_of_the_mass_matrix_and_weighs_nothing() -> None:
         "{claim: force function, equals: 9.81*(0.5*cos(q1) - 2*q2*cos(q1))}",
     ) == [Outcome.EXACT, Outcome.DIFFERS, Outcome.EXACT]
     assert not any("armature" in one for one in made.left_out)
+
+
+def test_an_armature_is_an_inertia() -> None:
+    hinge = '<body name="a"><joint armature="A"/><inertial mass="1" pos="0 0 1" diaginertia="1 1 1"/></body>'
+    codes = [code for code, _ in complaints_of(mujoco("", hinge.replace("A", "-0.1")))]
+    assert codes == ["impossible-inertia"]
+    assert "armature" not in str(converted(mujoco("", hinge.replace("A", "0.1"))).left_out)
 
 
 def test_a_joint_with_armature_alone_moves_by_its_rotor() -> None:

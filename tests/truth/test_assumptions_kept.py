@@ -59,3 +59,33 @@ motion: {x: b - a}
     )
     assert found.equilibrium.satisfied
     assert str(found.energy.force_function) == "-k*(x + a - b)**2/2"
+
+
+@pytest.mark.parametrize(
+    ("potential", "assumptions", "kept"),
+    [
+        # c x^2 + y^2 with c = a and 1, while a = b = 1 is what the description gives; then c = 1 and 1
+        ("a*x**2/2 + (1 - (a - b))*y**2/2", "[a >= b, a <= b]", False),
+        ("(1 + a - b)*x**2/2 + (1 - (a - b))*y**2/2", "[a >= b, a <= b]", True),
+        # no multiple of 1 and 1 keeps a b = 1: nothing is said
+        ("a*x**2/2 + (1/b + a*b - 1)*y**2/2", "[a*b >= 1, a*b <= 1]", False),
+        ("(a**2 + b)*x**2/2 + (a**2 + b)*y**2/2", "[a*b >= 1, a*b <= 1]", True),
+    ],
+)
+def test_assumptions_that_force_an_equality_make_the_given_values_no_proof(
+    potential: str, assumptions: str, kept: bool
+) -> None:
+    """Of V = c x^2 + d y^2 the angular momentum is kept where c = d, and nowhere else."""
+    found = mbsym.loads(
+        f"""
+mbsym: 1
+name: plane
+parameters: {{a: positive, b: positive}}
+assumptions: {assumptions}
+bodies:
+  - {{name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}}
+loads: [potential: {potential}]
+values: {{a: 1, b: 1}}
+"""
+    )
+    assert any(one.kind == "angular momentum" for one in found.integrals) is kept

@@ -32,7 +32,6 @@ from mbsym.numerics.planning.plan import (
     Item,
     Refused,
     Share,
-    poorly_measured,
 )
 from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.separable import Part
@@ -317,9 +316,7 @@ def _none(settled: Settled) -> str:
     """No setting was accurate enough, or none could be told to be."""
     if settled.measured_to is None:
         return Message("none tried is accurate enough")
-    return Message(
-        "[[why]]: none can be told to be enough", why=poorly_measured(settled.measured_to, settled.stick.parted)
-    )
+    return Message("none can be told to be enough")  # why is told above
 
 
 def _why_fineness(settled: Settled) -> str:

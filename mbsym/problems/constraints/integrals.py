@@ -47,6 +47,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.speed_states import in_time
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.states import are_met
 from mbsym.model.system import velocity_name
 from mbsym.problems.constraints.checks import moving
 from mbsym.problems.constraints.motion import Embedded, dependent_velocities
@@ -283,8 +284,9 @@ class _Kept(AlongMotion):
             return None
         if self.proves_zero(self.form.rate(x)):
             return Certainty.PROVED
-        # A force that comes late vanishes at every state before.
-        return None if self.ring.kinked else Certainty.VERIFIED
+        # A force that comes late vanishes at every state before, a difference where it is told.
+        told = self.ring.kinked or not are_met(self.form.system, self.ring)
+        return None if told else Certainty.VERIFIED
 
     def _by_multipliers(self, left: Polynomial, multipliers: Sequence[Polynomial]) -> bool:
         """Whether a rate is mu . E on allowed velocities, and J mu vanishes or is J u + j in every row."""

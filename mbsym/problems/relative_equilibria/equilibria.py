@@ -610,5 +610,6 @@ class _ChartSearch(SearchInBoxes):
                 self._values(place),
                 self.verdict(place),
                 self.chart.label,
+                {name: place.balls[name] for name in self.occurring},
             )
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -215,12 +215,17 @@ class Listing(Conditions):
             return found
         # Any value of these is an equilibrium, but not the same first approximation.
         words = {self._linear.verdict(place.elsewhere(varying, t)).word for t in ELSEWHERE}
-        names = ", ".join(varying)
-        if words != {found.word}:
-            *others, last = sorted(words - {found.word})
-            alternatives = Message("[[first]] or [[last]]", first=joined(others, ", "), last=last) if others else last
-            return undecided(Because.DIFFERS_ALONG, names, found.word, alternatives)
-        return replace(found, reasons=(*found.reasons, Reason(Because.ALSO_ELSEWHERE, (names,))))
+        return also_elsewhere(found, words, varying)
+
+
+def also_elsewhere(found: Verdict, words: Set[Word], varying: Sequence[str]) -> Verdict:
+    """The verdict at 0 of coordinates that may have any value, where these are the words at other values of them."""
+    names = ", ".join(varying)
+    if words != {found.word}:
+        *others, last = sorted(words - {found.word})
+        alternatives = Message("[[first]] or [[last]]", first=joined(others, ", "), last=last) if others else last
+        return undecided(Because.DIFFERS_ALONG, names, found.word, alternatives)
+    return replace(found, reasons=(*found.reasons, Reason(Because.ALSO_ELSEWHERE, (names,))))
 
 
 def short(value: float) -> str:
@@ -272,7 +277,7 @@ class RelativeEquilibrium:
 class EquilibriumFamily:
     """Relative equilibria that are not isolated: a real set of ``dimension``, all solutions of ``equations`` = 0.
 
-    ``sample`` is one of them, ``verdict`` the verdict there; ``free`` may be chosen near it.
+    ``sample`` is one of them, in ``enclosures``, ``verdict`` the verdict there; ``free`` may be chosen near it.
     """
 
     dimension: int
@@ -281,6 +286,7 @@ class EquilibriumFamily:
     sample: tuple[CoordinateValue, ...]
     verdict: Verdict
     coordinates_of: str = ""
+    enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from mbsym.expressions.tree import number, substitute
 from mbsym.formulas.python import python_text
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Rest
+from mbsym.mechanics.symmetry import odd_in
 from mbsym.model.system import System
 
 #: Working precision of enclosures, in bits.
@@ -84,7 +85,7 @@ class Place:
         ring = self.ring
         exact = {k: value for k, value in self._exact.items() if ring.generators[k].argument is None}
         balls = dict(self.balls)
-        for kind, name in (("coordinate", length), ("sine", angle), ("cosine", angle)):
+        for kind, name in (*odd_in(ring, length), ("sine", angle), ("cosine", angle)):
             if exact.get(ring.index(kind, name)) is not None:
                 exact[ring.index(kind, name)] = -exact[ring.index(kind, name)]
         exact.pop(ring.index("coordinate", angle), None)

@@ -44,7 +44,8 @@ Rows = list[list[list[Any]]]
 class LinearAtRest:
     """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes; of the open tree where it is tied.
 
-    ``law``: what the energy does near all of these states; ``ignorable``: coordinates that no equation contains.
+    ``law``: what the energy does near all of these states; ``ignorable``: coordinates that no equation contains;
+    ``cyclic``: places of those whose momenta are constant but for linear forces.
     """
 
     matrices: tuple[Sequence[Sequence[Polynomial]], ...]
@@ -76,10 +77,14 @@ class LinearAtRest:
                 by_energy = self._by_higher_order(place, field)
                 if by_energy is not None:
                     return by_energy
-                names = None if self._conserved is None else self._conserved.combination(place.residue, field)
+                known = self._conserved
+                names = None if known is None else known.combination(place.residue, field)
         except NotRational:
             return verdict
-        return verdict if names is None else by_integrals(names, bool(self.ignorable))
+        if names is not None:
+            return by_integrals(names, bool(self.ignorable))
+        held = known.holding() if known is not None and self._idle else None
+        return verdict if held is None else drifting(held) if self.ignorable else held
 
     def _by_higher_order(self, place: Place, field: NumberField) -> Verdict | None:
         """Where no coordinate turns, V = T_2 part of the energy apart: K = V'' as a formula gives all derivatives."""
@@ -112,6 +117,12 @@ class LinearAtRest:
             return None
         verdict = by_potential(len(remaining), derivative, field, conserved, only, gyroscopic, damping)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
+
+    @property
+    def _idle(self) -> bool:
+        """Whether V is the same at every position, and nothing turns: the energy is that of T_2."""
+        parts = (*self.matrices[3], *self.matrices[4])
+        return not self.rest.turning and all(self.rest.ring.is_zero(x) is True for row in parts for x in row)
 
     @property
     def _alike(self) -> bool:
@@ -259,9 +270,8 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     spin = None if found.rows else free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
-    ignorable = tuple(names[i] for i in cyclic)
     exact = balance.exactly_linear
-    return LinearAtRest(parts, law, cyclic, varying, tilts, rate, found, known, ignorable, exact)
+    return LinearAtRest(parts, law, cyclic, varying, tilts, rate, found, known, balance.ignorable, exact)
 
 
 def has_energy(found: Rest) -> bool:

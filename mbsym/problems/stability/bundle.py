@@ -384,6 +384,21 @@ class Conserved:
         contributing = [name for name, mu in zip(self.names, multipliers, strict=True) if not mu.contains(0)]
         return tuple(contributing) or self.names
 
+    def holding(self) -> Verdict | None:
+        """Stability by one coordinate's integral where T_2 is the energy, which does not grow; None without such one.
+
+        With I(q, 0) = A(q), which is analytic and not constant, E + (I - I_0)^2 has a strict minimum at every rest:
+        E = 0 says q' = 0, and A(q) = A(q_0) has no other solution near q_0.
+        """
+        ring = self.ring
+        if len(self.coordinates) != 1 or ring.kinked:
+            return None
+        (name,) = self.coordinates
+        for title, x in zip(self.names, self.polynomials, strict=True):
+            if ring.is_zero(ring.reduce(ring.derivative(ring.at_rest(x), name))) is False:
+                return concluded({Fact.INTEGRALS_DEFINITE}, Reason(Because.INTEGRAL_HOLDS, (name, worded(title))))
+        return None
+
 
 def by_integrals(names: Sequence[str], drift: bool) -> Verdict:
     """Stability by the integrals called ``names``; ``drift``: with respect to what is not cyclic."""

@@ -81,6 +81,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     ),
     Because.UNDAMPED_MOTION: "In first approximation motions of [[1]] stay undamped.",
     Because.INTEGRALS: _integrals,
+    Because.INTEGRAL_HOLDS: "The potential energy is the same at every position, so that the energy keeps velocities "
+    "small; an integral ([[2]]) whose value at rest varies with [[1]] keeps [[1]] near its value.",
     Because.LINEAR_BOUNDED: (
         "The equations of motion are exactly linear: no root has a positive real part, and those on the imaginary axis "
         "are semisimple, so that every disturbed motion stays near."
@@ -230,7 +232,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",
     Because.NO_CLOSED_FORM: "No closed form within the budget: [[1]].",
     Because.ALSO_ELSEWHERE: "This is so at [[1]] = 0, and elsewhere in samples.",
-    Because.DIFFERS_ALONG: "It depends on [[1]]: [[2]] at 0, [[3]] elsewhere.",
+    Because.DIFFERS_ALONG: "It depends on [[1]]: [[2]] at 0, [[3]] in samples elsewhere.",
     Because.NO_EQUATIONS: "[[1]]",
     Because.MASS_SINGULAR: "The mass matrix is singular.",
     Because.ORDER_LOWER: "The mass matrix is singular, so the order of the equations is lower.",

@@ -30,6 +30,7 @@ from mbsym.expressions.message import joined
 from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.words import (
+    BEYOND_LINEAR,
     LAGRANGE,
     LINEAR,
     MALKIN,
@@ -197,6 +198,11 @@ class Verdict:
         if Flaw.HERE in self.flawed:
             return Word.UNSTABLE
         return Word.STABLE if Flaw.CYCLIC in self.flawed and Ground.LINEAR in self.laid else self.word
+
+    @property
+    def beyond_linear(self) -> bool:
+        """Whether more than the first approximation was needed, whose conditions are not those of this verdict."""
+        return any(map(self.because, BEYOND_LINEAR))
 
     @property
     def coordinates_singular(self) -> bool:

@@ -141,6 +141,7 @@ class Because(Enum):
     MINIMUM_AND_DISSIPATION_BUT_CYCLIC = auto()
     UNDAMPED_MOTION = auto()  # (coordinates)
     INTEGRALS = auto()  # (which)
+    INTEGRAL_HOLDS = auto()  # (coordinate, integral)
     LINEAR_BOUNDED = auto()
     LINEAR_SHIFTED = auto()
     LINEAR_GROWS = auto()
@@ -207,6 +208,21 @@ class Because(Enum):
     MOTION_NOT_THERE = auto()  # (condition, value)
     MOTION_OPEN = auto()  # (condition)
     POLE = auto()  # (divisor)
+
+
+#: What needs more than the first approximation, and the energy, of the whole system.
+BEYOND_LINEAR = (
+    Because.INTEGRALS,
+    Because.INTEGRAL_HOLDS,
+    Because.HIGHER_MINIMUM,
+    Because.HIGHER_MINIMUM_AND_COMPLETE,
+    Because.NO_MINIMUM,
+    Because.ALONG_RESTS,
+    Because.FEWER_CONSTRAINTS,
+    Because.TERMS_OF_HIGHER_ORDER,
+    Because.APART,
+    Because.WHILE_OTHERS_REST,
+)
 
 
 @dataclass(frozen=True)

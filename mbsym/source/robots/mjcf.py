@@ -472,6 +472,8 @@ class _Bodies:
         if element.get("actuatorfrcrange"):
             reader.leave_out("limits of an actuator")
         armature = reader.number(element, "armature")
+        if float(armature) < 0:
+            reader.error("impossible-inertia", "an armature is not negative", element)
         if kind == "free" and float(armature):
             reader.leave_out("armature of a free joint")
             armature = "0"

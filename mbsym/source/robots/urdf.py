@@ -221,7 +221,7 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
     kind = _KINDS[element.get("type")]
     if not kind:
         return ()
-    axis = reader.three(element.first("axis"), "xyz", "1 0 0")
+    axis = ("1", "0", "0") if kind == "free" else reader.three(element.first("axis"), "xyz", "1 0 0")  # it has none
     if all(float(part) == 0 for part in axis):
         reader.error("bad-axis", "an axis of length zero", element)
         axis = ("1", "0", "0")

@@ -16,9 +16,13 @@ from mbsym.problems.relative_equilibria.equilibria import (
     RelativeEquilibrium,
 )
 from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.sentences import explanation
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.content import Block, Graded, Inline, Strong, Subheading, Table, aligned, column, paragraph
 from mbsym.report.unit_text import labelled, pretty
+
+#: Said of rows: of what is judged at some values only of coordinates that may have any.
+_SAMPLED = (Because.ALSO_ELSEWHERE, Because.DIFFERS_ALONG)
 
 #: Longer equations of a family are only counted.
 _LONGEST = 100
@@ -29,6 +33,9 @@ def lines(system: System, equilibria: Equilibria, permanent: PermanentRotations 
     yield from _summary(equilibria)
     if equilibria.equilibria:
         yield _table(system, equilibria.equilibria)
+        for number, one in enumerate(equilibria.equilibria, 1):
+            if sampled := [x for x in one.verdict.reasons if x.code in _SAMPLED]:
+                yield paragraph(f"{number}: ", explanation(sampled))
     angles = {name for body in system.bodies for _, angle in body.rotation.turns() for name in names(angle)}
     for name, rate in equilibria.turning:
         value = with_unit(f"{rate:.10g}", pretty(system.units.rate_of(name)))
