@@ -17,7 +17,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure, NotRational, NoValue, SingularPoint, message_of
 from mbsym.algebra.point import Balls, Rationals
-from mbsym.algebra.program import Node, Program
+from mbsym.algebra.program import MOST_BITS, Node, Program
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import ZERO, Expression, names
@@ -424,6 +424,8 @@ class Specialised(Program):
         if max(value.numerator.bit_length(), value.denominator.bit_length()) > 2 * PRECISION:
             with ctx.workprec(PRECISION):
                 value = rounded(rationals.ball(value))
+            if abs(value) * 2 ** (MOST_BITS - PRECISION) < 1:  # a power of what is 0 but for the rounding of pi
+                value = Fraction(0)
         return super().number(value)
 
     def input(self, name: str) -> Node:

@@ -20,7 +20,7 @@ from mbsym.expressions.message import Message
 from mbsym.model.states import described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
-from mbsym.numerics.closing import Closed, begun, moves, moving
+from mbsym.numerics.closing import Closed, begun, moves, moving, shown
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import (
     Conservation,
@@ -39,7 +39,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.extremes.singular_positions import stepped_over
 from mbsym.numerics.methods.interface import Method, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.models import LinearisedDynamics, droppable, scenario_of
+from mbsym.numerics.planning.models import LinearisedDynamics, droppable, linearised, scenario_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.planning.sizes import kinetic_between, kinetic_rounding
@@ -172,11 +172,13 @@ def prepared(scenario: Scenario, request: Request) -> tuple[Scenario, Closed | N
     closed = begun(scenario, request.fixed, request.variables == DECLARED)
     closed = moving(closed) if system.constraints else closed
     whole = scenario_of(closed.scenario, model) if later else closed.scenario
+    if model.linear:
+        whole = on_tangent(whole, request.fixed)
     if not system.constraints:
         return whole, None
     if model.linear:
-        whole = on_tangent(whole, request.fixed)
-        closed = replace(closed, scenario=whole, moves=moves(scenario, whole))
+        given = shown(scenario, request.variables == DECLARED)
+        closed = replace(closed, scenario=whole, moves=moves(given, whole))
     return whole, closed
 
 
@@ -200,17 +202,15 @@ def refuse_in_run(system: System, request: Request) -> None:
     """With speeds, raises ValueError and Unusable for what does not know them."""
     if not runs_in_states(system, request):
         return
-    features = {"a linear model": request.model.linear, "going on from an earlier run": request.earlier is not None}
-    wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in features.items() if there]
-    if wrong:
-        raise ValueError("; ".join(wrong))
+    if request.earlier is not None:
+        raise ValueError(f"going on from an earlier run {NOT_IN_STATES}: take variables='{COORDINATES}'")
     if request.method in METHODS and METHODS[request.method].traits.conservative:
         text = "[[method]] integrates coordinates and their velocities only; this system has speeds"
         raise Unusable(Message(text, method=request.method))
 
 
 def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynamics:
-    return LinearisedDynamics(scenario, ring) if request.model.linear else dynamics_of(scenario, ring, request.whole)
+    return linearised(scenario, ring) if request.model.linear else dynamics_of(scenario, ring, request.whole)
 
 
 def drift_along(dynamics: Dynamics, trajectory: integration.Trajectory) -> Drift | None:

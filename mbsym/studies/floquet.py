@@ -48,7 +48,7 @@ def floquet(context: Asked, request: Request, watch: Watch) -> Judged:
     from mbsym.numerics.orbits.floquet import judged
 
     watch("enclosing the monodromy matrix")
-    return judged(Dynamics(context.motion))
+    return judged(Dynamics(context.motion), steady=False)
 
 
 def answer(context: Asked, request: Request, judged: Judged) -> Answer:

@@ -65,6 +65,7 @@ def test_a_model_is_the_same_in_both_kinds_of_variables(model: tuple[str, str], 
         (("--sensitivity", "A"), "sensitivity.csv"),
         (("--vary", "theta=0.05:0.06:2"), "ensemble.csv"),
         (("--certify", "1e-6"), "enclosure.csv"),
+        (("--linear",), "trajectory.csv"),
     ],
 )
 def test_what_knows_declared_variables_speaks_them(words: tuple[str, ...], table: str, tmp_path: Path) -> None:
@@ -83,7 +84,6 @@ def test_a_speed_that_is_no_state_alone_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("--linear", ("--linear",)),
         ("--bodies", ("--bodies",)),
         ("--method", ("--method", "midpoint", "--step", "0.1")),
         ("--method", ("--method", "lsoda")),

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.orbits.floquet import NotPeriodic, Word, judged
+from mbsym.numerics.orbits.floquet import ConstantCoefficients, NotPeriodic, Word, judged
 from mbsym.numerics.scenario import scenario
 
 TEXT = """
@@ -78,3 +78,21 @@ def test_a_motion_that_exists_is_not_called_none() -> None:
     """On a circle x and y follow by the constraints, and unevenly: the motion satisfies the equations nevertheless."""
     with pytest.raises(NotPeriodic, match="follows the unperturbed motion"):
         judged(Dynamics(scenario(mbsym.load(SHIPPED / "rolling-disc-in-a-circle.yaml").system)))
+
+
+@pytest.mark.parametrize("name", ["rolling-disc", "rolling-disc-speeds"])
+def test_what_is_the_same_at_all_times_is_told_to_be_that(name: str) -> None:
+    """Sines and cosines of the spin cancel in the rates of an upright disc, in coordinates and in speeds."""
+    with pytest.raises(ConstantCoefficients, match="problem 6 judges it"):
+        mbsym.floquet(mbsym.load(SHIPPED / f"{name}.yaml"))
+
+
+def test_rows_that_follow_from_others_are_no_jumps() -> None:
+    """A rod that keeps a distance said twice: pivots among dependent rows hold moduli and signs, smooth there."""
+    row = TEXT.split("constraints:\n")[1].split("motion:")[0]
+    text = TEXT.replace(row, row + row).replace("PLACE", "l").replace("RATE", "30")
+    told = judged(Dynamics(scenario(mbsym.loads(text).system)))
+    once = found("l", 30)
+    assert (told.word, told.names) == (once.word, once.names)
+    middles = [sorted(float(x.ball.real.mid()) for x in one.multipliers) for one in (told, once)]
+    assert middles[0] == pytest.approx(middles[1], rel=1e-9)

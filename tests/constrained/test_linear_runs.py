@@ -46,7 +46,7 @@ initial: {x: 1/10, y: -1}
 def run(system: System, time: float, values: dict[str, Any] | None = None, linear: bool = True) -> Simulation:
     given = {name: Number(Fraction(value)) for name, value in (values or {}).items()}
     request = Request(time, samples=11, tolerance=1e-11, model=Model(linear=linear), estimate=False)
-    return simulate(scenario(system, given), request)
+    return simulate(scenario(system, given, declared=True), request)
 
 
 def states(found: Simulation) -> dict[str, Any]:
@@ -147,6 +147,8 @@ def apart(system: System, amplitude: str, start: dict[str, tuple[str, str]], tim
     return max(float(np.max(np.abs(whole[name] - linear[name]))) for name in whole)
 
 
+SPEEDS = "speeds: {p: omega1, q: omega2, w: omega3}"
+
 CASES_OF_SMALL = {
     "trapezium": (TRAPEZIUM, {"p": ("0", "1"), "q": ("0", "-1/2"), "q_dot": ("0", "2")}, 2.0),
     "pendulum": (PENDULUM.replace("initial: {x: 1/10,", "dependent: [y]\ninitial: {"), {"x": ("0", "1")}, 3.0),
@@ -160,7 +162,29 @@ CASES_OF_SMALL = {
         {"tilt": ("0", "1"), "tilt_dot": ("0", "1"), "yaw": ("0", "9"), "pl_dot": ("5", "1"), "pr_dot": ("5", "-2")},
         0.5,
     ),
-}
+    "disc in speeds": (
+        (SHIPPED / "rolling-disc-speeds.yaml").read_text(encoding="utf-8"),
+        {"lean": ("0", "1"), "yaw": ("0", "1"), "spin": ("0", "1"),
+         "spin_dot": ("5", "3"), "yaw_dot": ("0", "2"), "lean_dot": ("0", "1")},
+        1.0,
+    ),
+    "ball in a bowl by quaternion": (
+        (SHIPPED / "dish-sphere.yaml")
+        .read_text(encoding="utf-8")
+        .replace("gamma]\n\n", f"gamma]\n    {SPEEDS}\n    orientation: {{e: quaternion}}\n\n")
+        .replace("z, alpha, beta]", "x, y, z]"),
+        {"x": ("0", "1"), "y": ("0", "-2"), "z": ("-1/2", "0"), "x_dot": ("0", "0"), "y_dot": ("0", "1"),
+         "alpha": ("0", "1"), "alpha_dot": ("0", "2"), "beta_dot": ("0", "1"), "gamma_dot": ("1", "1")},
+        1.0,
+    ),
+    "satellite in unit vectors": (
+        (SHIPPED / "gravity-gradient-quaternion.yaml").read_text(encoding="utf-8").split("initial:")[0]
+        .replace("{e: quaternion}", "{a: 1, b: 2, c: 3}")
+        .replace("R: 7000000, omega0: 0.001, nu: 343000000000000", "R: 10, omega0: 1, nu: 1000"),
+        {"psi": ("0", "1"), "theta": ("0", "2"), "phi": ("0", "-1"), "psi_dot": ("0", "1"), "phi_dot": ("0", "3")},
+        2.0,
+    ),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", CASES_OF_SMALL)
@@ -170,6 +194,49 @@ def test_what_a_linear_run_leaves_out_falls_as_the_square(name: str) -> None:
     rough, fine = (apart(system, amplitude, start, time) for amplitude in ("1/1000", "1/2000"))
     assert fine > 1e-8  # no roundings
     assert rough / fine == pytest.approx(4, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("orientation", "turns"), [("e: quaternion", 1), ("e: quaternion", -1), ("a: 1, b: 2, c: 3", 1)]
+)
+def test_declared_variables_run_where_angles_are_singular(orientation: str, turns: int) -> None:
+    """A symmetric body that spins at n about its axis, at the pole of 3-1-3: by hand, with k = (C - A) n/A,
+
+        p' = -k q,  q' = k p,  r = n;      c1' = n c2 - q,  c2' = p - n c1  of space's third axis (c1, c2, c3).
+
+    The quaternion -e is the same orientation.
+    """
+    n, k = 2.0, 1.0
+    start = "a1: 0.8, a2: 0, a3: 0.6, b1: 0, b2: 1, b3: 0, c1: -0.6, c2: 0, c3: 0.8"
+    if "quaternion" in orientation:
+        start = f"e0: {turns * 0.8}, e1: 0, e2: {turns * 0.6}, e3: 0"
+    text = f"""
+mbsym: 1
+name: Top without a moment
+bodies:
+  - {{name: body, attached to: 0, rotation: {{axes: [3, 1, 3], angles: [psi, theta, phi]}}, mass: 0,
+     inertia about: joint, inertia: [2, 2, 3], speeds: {{p: omega1, q: omega2, r: omega3}},
+     orientation: {{{orientation}}}}}
+motion: {{psi: 0, theta: 0, phi: {{rate: 2}}}}
+initial: {{{start}, p: 1/50, q: 0, r: 2}}
+"""
+    found = run(mbsym.loads(text).system, 3.0)
+    got, t = states(found), found.trajectory.times
+    assert got["p"] == pytest.approx(0.02 * np.cos(k * t), abs=1e-9)
+    assert got["q"] == pytest.approx(0.02 * np.sin(k * t), abs=1e-9)
+    assert got["r"] == pytest.approx(n, abs=1e-12)
+    # c = c1 + i c2 obeys  c' = -i n c + i (p + i q), from c(0) = c1, or -2 e2 to first order.
+    wave = 0.02 / (n + k) * np.exp(1j * k * t)
+    wanted = wave + ((-1.2 if "quaternion" in orientation else -0.6) - wave[0]) * np.exp(-1j * n * t)
+    if "quaternion" in orientation:
+        e = np.array([got[f"e{i}"] for i in range(4)])
+        assert e[:, 0] == pytest.approx([1, 0, 0.6, 0], abs=1e-12)
+        e0, e3 = np.cos(t), np.sin(t)  # of the motion; to first order c1 = 2 (e1 e3 - e0 e2), c2 = 2 (e2 e3 + e0 e1)
+        first = 2 * (e[1] * e3 - e0 * e[2]) + 2j * (e[2] * e3 + e0 * e[1])
+    else:
+        vectors = [[got[f"{x}{i}"] for i in (1, 2, 3)] for x in "abc"]
+        first = np.array(vectors[2][0]) + 1j * np.array(vectors[2][1])
+    assert first == pytest.approx(wanted, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -12,10 +12,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.methods.interface import Unusable
-from mbsym.numerics.planning.models import Model
-from mbsym.numerics.scenario import scenario
 from mbsym.numerics.states import StateDynamics, norm_drifts
-from mbsym.simulation import Request, simulate
 
 FREE = """
 mbsym: 1
@@ -194,10 +191,7 @@ def test_methods_that_do_not_apply_are_refused(jacobi: Analysis, method: str) ->
         mbsym.simulate(jacobi, 1.0, method=method, **how)
 
 
-def test_what_goes_with_coordinates_only_is_refused(jacobi: Analysis) -> None:
-    linear = Request(1.0, model=Model(linear=True))
-    with pytest.raises(ValueError, match="a linear model integrates coordinates"):
-        simulate(scenario(jacobi.system, declared=True), linear)
+def test_there_is_no_third_choice_of_variables(jacobi: Analysis) -> None:
     with pytest.raises(ValueError, match="no choice of variables angles: choose from declared, coordinates"):
         mbsym.simulate(jacobi, 1.0, variables="angles")
 

@@ -63,6 +63,12 @@ MOST_STEPS, MOST_STATES = 20_000, 40
 #: Accelerations on the unperturbed motion below this are rounding of the description's numbers.
 AT_REST = Fraction(1, 10**50)
 
+#: When it is looked whether something is so at all times.
+TIMES = (Fraction(0), Fraction(1, 3), Fraction(7, 5), Fraction(29, 7))
+
+#: What is said of others.
+CONSTANT = "its coefficients are constant: problem 6 judges it (mbsym run)"
+
 
 class NotPeriodic(Failure):
     """There is no periodic first approximation to judge; the message says why."""
@@ -113,14 +119,17 @@ class Judged:
     steps: int
 
 
-def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
-    """The first approximation of the scenario's system about its unperturbed motion.
+def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS, steady: bool = True) -> Judged:
+    """The first approximation of the scenario's system about its unperturbed motion; ``steady``: although it is one at
+    all times, where that is not seen of the equations as they are written.
 
     Raises NotPeriodic where there is none, where its coefficients are constant or not seen to be periodic, or where the
     unperturbed motion is none at these values.
     """
     code, rests = jacobian_on_motion(dynamics)
     frequency = common_frequency(code)
+    if not steady and _is_the_same_at_all(code):
+        raise ConstantCoefficients(CONSTANT)
     with ctx.workprec(bits):
         period = 2 * arb.pi() / ball(frequency)
         monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
@@ -226,11 +235,20 @@ def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
     return Code(fresh, ("t",), tuple(entries)), rests
 
 
+def _is_the_same_at_all(code: Code) -> bool:
+    """Whether its values, sums of quotients of sines and cosines of the time, are one at each of some times."""
+    with ctx.workprec(2 * BITS):
+        first, *others = (enclosures(code, [ball(at)], 2 * BITS) for at in TIMES)
+        return all(
+            abs(x - y) < ball(AT_REST) * (1 + abs(x)) for other in others for x, y in zip(first, other, strict=True)
+        )
+
+
 def _require_rest(code: Code, dynamics: Dynamics) -> None:
     system = dynamics.system
     following = {*system.coordinates} - {entry.coordinate for entry in system.motion} if system.constraints else ()
     with ctx.workprec(BITS):
-        for at in (Fraction(0), Fraction(1, 3), Fraction(7, 5), Fraction(29, 7)):
+        for at in TIMES:
             for name, value in zip(dynamics.system.coordinates, series(code, arb_series([ball(at)])), strict=True):
                 size = abs(_coefficient(value, 0))
                 if not size < ball(AT_REST):
@@ -282,7 +300,7 @@ def common_frequency(code: Code) -> Fraction:
     _require_no_time(any(slopes[node.number] for node in code.outputs))
     all_of_them = frozenset().union(*(frequencies[node.number] for node in code.outputs))
     if not all_of_them:
-        raise ConstantCoefficients("its coefficients are constant: problem 6 judges it (mbsym run)")
+        raise ConstantCoefficients(CONSTANT)
     bottom = lcm(*(frequency.denominator for frequency in all_of_them))
     return Fraction(gcd(*(int(frequency * bottom) for frequency in all_of_them)), bottom)
 
@@ -340,6 +358,8 @@ def series(code: Code, time: arb_series) -> list[Any]:
                 values[number] = _hyperbolic(name, a)
             case ("sin" | "cos" | "sqrt" | "exp" | "log" | "atan") as name, [a]:
                 values[number] = getattr(a, name)()
+            case ("sign" | "abs") as name, [a]:
+                values[number] = _signed(name, a)
             case name, _:
                 raise NotPeriodic("[[name]] has no power series here", name=name)
     return [values[node.number] for node in code.outputs]
@@ -348,6 +368,13 @@ def series(code: Code, time: arb_series) -> list[Any]:
 def _quotient(a: arb_series, b: arb_series) -> arb_series:
     """a/b, no finite number where b may vanish, as of balls: divided as a series it is an error."""
     return arb_series([arb.nan()] * ctx.cap) if _coefficient(b, 0).contains(0) else a / b
+
+
+def _signed(name: str, x: arb_series) -> arb_series:
+    """sign x or |x|, no finite number where x may vanish; pivots of constraints hold them."""
+    first = _coefficient(x, 0)
+    sign = arb.nan() if first.contains(0) else arb(1 if first > 0 else -1)
+    return arb_series([sign]) if name == "sign" else x * sign
 
 
 def _hyperbolic(name: str, x: arb_series) -> arb_series:

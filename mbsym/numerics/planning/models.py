@@ -9,27 +9,27 @@ without   parameters taken as zero: a mass, a stiffness, a damping that this mot
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from mbsym.algebra.base import Lowering
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import names
-from mbsym.mechanics.motion import motion_values
+from mbsym.mechanics.speed_programs import restoring
 from mbsym.mechanics.variables import expressions
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS
-from mbsym.model.system import System, velocity_name
+from mbsym.model.states import InStates
+from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Scenario, Specialised, changed, exact, substituted
-from mbsym.numerics.states import dynamics_of
-from mbsym.numerics.tangent import along_motion, on_tangent
+from mbsym.numerics.scenario import Scenario, changed, exact, substituted
+from mbsym.numerics.states import StateDynamics, dynamics_of
+from mbsym.numerics.tangent import Placed, on_tangent, unperturbed
 
 if TYPE_CHECKING:
     from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
@@ -56,10 +56,13 @@ class LinearisedDynamics(Dynamics):
     def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
         super().__init__(on_tangent(scenario), ring)
 
+    #: As do norms of quaternions and unit vectors.
+    correction = None
+
     @cached_property
     def whole(self) -> Dynamics:
         """The equations that are linearised."""
-        return Dynamics(self.scenario, self.ring)
+        return dynamics_of(self.scenario, self.ring)
 
     @property
     def _solved(self) -> ForwardDynamics | ConstrainedDynamics:
@@ -71,15 +74,11 @@ class LinearisedDynamics(Dynamics):
 
     @cached_property
     def right_hand_side(self) -> Code:
-        whole = self.whole
-        plain, code = self._specialised, whole.right_hand_side
-        at_rest, rates = self._motion(plain)
-        rows = whole.jacobian
-        image = _Placed(plain, {**at_rest, **rates})
-        nodes = substituted(code.program, [*code.outputs, *rows.outputs], image)
-        size = 2 * self.size
-        images = [*at_rest.values(), *rates.values()]
-        deviation = [plain.input(name) - image for name, image in zip(self.inputs[1:], images, strict=True)]
+        plain, code, rows = self._specialised, self.whole.right_hand_side, self.whole.jacobian
+        motion = unperturbed(self.scenario, plain)
+        nodes = substituted(code.program, [*code.outputs, *rows.outputs], Placed(plain, motion))
+        size = self.dimension
+        deviation = [plain.input(name) - motion[name] for name in self.inputs[1:]]
         outputs = []
         for i in range(size):
             total = nodes[i]
@@ -87,24 +86,6 @@ class LinearisedDynamics(Dynamics):
                 total = total + plain.product(nodes[size + i * size + j], deviation[j])
             outputs.append(total)
         return Code(plain, self.inputs, tuple(outputs))
-
-    def _motion(self, program: Specialised) -> tuple[dict[str, Node], dict[str, Node]]:
-        """The unperturbed positions and velocities as nodes in t."""
-        lower = Lowering(program, program.bound)
-        time_ = program.input("t")
-        at_rest, rates = {}, {}
-        if self.system.constraints:  # velocities that the motion does not name follow from them
-            state = along_motion(self.whole)
-            for i, name in enumerate(self.system.coordinates):
-                slope = program.number(state[self.size + i])
-                at_rest[name] = program.number(state[i]) + program.product(slope, time_)
-                rates[velocity_name(name)] = slope
-            return at_rest, rates
-        for name, (value, rate) in motion_values(self.system).items():
-            slope = lower(rate)
-            at_rest[name] = lower(value) + program.product(slope, time_)
-            rates[velocity_name(name)] = slope
-        return at_rest, rates
 
     @cached_property
     def jacobian(self) -> Code:
@@ -114,15 +95,23 @@ class LinearisedDynamics(Dynamics):
         return Code(code.program, self.inputs, tuple(node for row in rows for node in row))
 
 
-class _Placed(Specialised):
-    """Writes into another program, with nodes of that program in place of some inputs."""
+class LinearisedStates(LinearisedDynamics, StateDynamics):
+    """The same in declared variables; energies are those of orientations, so of vectors that are led back to norm 1."""
 
-    def __init__(self, target: Specialised, images: dict[str, Node]) -> None:
-        self.__dict__.update(target.__dict__)  # the same instructions and tables: nodes belong to the target
-        self.bound = {**target.bound, **images}
+    @cached_property
+    def _in_scene(self) -> Sequence[Node]:
+        plain, nodes = self._specialised, super()._in_scene
+        moved = {name: plain.input(name) + step for name, step in restoring(plain, self.described).items()}
+        return substituted(plain, nodes, Placed(plain, moved))
 
-    def __hash__(self) -> int:
-        return id(self)
+    @property
+    def pivots(self) -> Code:
+        return self.whole.pivots
+
+
+def linearised(scenario: Scenario, ring: Ring | None = None) -> LinearisedDynamics:
+    """In what the scenario is told in: coordinates and their velocities, or declared variables."""
+    return (LinearisedStates if isinstance(scenario.system, InStates) else LinearisedDynamics)(scenario, ring)
 
 
 @dataclass(frozen=True)
@@ -160,7 +149,7 @@ def scenario_of(scenario: Scenario, model: Model) -> Scenario:
 def modelled(scenario: Scenario, model: Model) -> Dynamics:
     """The equations of a model.  Raises Failure where there is no program for them, as ``Dynamics`` does."""
     simplified = scenario if model == Model() else scenario_of(scenario, model)
-    return LinearisedDynamics(simplified) if model.linear else dynamics_of(simplified)
+    return linearised(simplified) if model.linear else dynamics_of(simplified)
 
 
 def described(scenario: Scenario) -> Model:

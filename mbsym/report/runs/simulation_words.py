@@ -300,7 +300,9 @@ def state_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     columns = norm_columns(run)
     if columns:
         worst = max(float(np.max(values)) for values in columns.values())
-        if has_quaternions(system.described):
+        if run.request.model.linear:
+            text = "linear equations keep norms and right angles to first order: they drift by [[drift]] at most"
+        elif has_quaternions(system.described):
             text = (
                 "norms of quaternions are restored after every step; left of their drift at the rows: [[drift]] at most"
             )

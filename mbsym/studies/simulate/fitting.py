@@ -351,7 +351,6 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
 
     options = {
         "--continue": request.earlier is not None,
-        "--linear": request.model.linear,
         **{option: kind in formats for kind, option in OF_BODIES.items()},
     }
     for option, there in options.items():
