@@ -315,7 +315,7 @@ CUT = (OUT_OF_TIME, TOO_DEAR, INTERRUPTED)
 
 #: What a step costs, an operation of rates and Jacobian and as many for all else, times the square of the bits: about
 #: seconds of a usual machine (``mbsym.numerics.planning.prices``).
-STEP, BESIDES = 2.5e-8, 30
+STEP, BESIDES = 6e-8, 15
 
 
 @dataclass(frozen=True)
