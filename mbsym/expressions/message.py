@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from math import ceil, floor, inf, log10
 from numbers import Number
 from typing import Any, Self
 
@@ -127,6 +128,19 @@ def plain_notation(tex: str, power: str = "^") -> str:
 def counted(n: int, one: str, many: str = "") -> str:
     """``1 term``, ``4 terms``; ``many`` where the plural is another than ``one`` with an s."""
     return f"{n} {one if n == 1 else many or one + 's'}"
+
+
+def at_most(value: float) -> str:
+    """``3.2e-11``, rounded up: a bound stays one."""
+    if not 0 < value < inf:
+        return f"{value:.1e}"
+    power = floor(log10(value)) - 1
+    return f"{ceil(value / 10.0**power * (1 - 1e-15)) * 10.0**power:.1e}"
+
+
+def plainly(value: float) -> str:
+    """A number that was asked for with the digits that it was asked with: ``1.5e-09``, ``1e-06``."""
+    return f"{value:.15g}"
 
 
 def duration(seconds: float) -> Message:

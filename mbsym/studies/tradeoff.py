@@ -128,7 +128,7 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
     if answered.before:
         yield line("  ", say(Message(BEFORE)))
     text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"
-    error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.0e}", duration(truth.seconds)
+    error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.1e}", duration(truth.seconds)
     yield line("  ", say(Message(text, method=truth.method, error=error, time=time, least=least)))
     yield _runs(request, study)
     for order in trade.orders:

@@ -36,10 +36,10 @@ class Measure:
 
     @property
     def clear(self) -> bool:
-        """Whether the two differ beyond doubt: counts if they differ at all, seconds if by half and a hundredth."""
+        """Whether the two differ beyond doubt: counts if they differ at all, seconds if twofold and by a tenth."""
         if self.unit != SECONDS:
             return self.saved != 0
-        return abs(self.saved) > max(0.01, 0.5 * min(self.without, self.taken))
+        return abs(self.saved) > max(0.1, min(self.without, self.taken))
 
 
 @dataclass(frozen=True)

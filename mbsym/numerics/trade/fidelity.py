@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, plainly
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS
 from mbsym.model.states import InStates
 from mbsym.numerics.dynamics import Dynamics
@@ -148,7 +148,7 @@ def model_advice(models: Sequence[ModelError], target: float) -> str:
     text = Message("The model as described is [[error]] away from [[model]]", error=far, model=rich)
     if own.error > target:
         said = "[[what]]: an error of [[target]] is one of its equations, not of the motion."
-        return Message(said, what=text, target=f"{target:.0e}")
+        return Message(said, what=text, target=plainly(target))
     return Message("[[what]], which adds to the error.", what=text)
 
 

@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.expressions.message import Message, duration
+from mbsym.expressions.message import Message, at_most, duration, plainly
 from mbsym.numerics.closing import begun
 from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.constrained import drift
@@ -61,6 +61,9 @@ LEAST = 0.05
 #: The part of the budget that the likely winner may spend, which is tried first, and the tolerance that it is asked at.
 FIRST, USUAL_TOLERANCE = 0.4, 1e-10
 
+#: A measured order is the median of so many halvings, the finest ones.
+ORDER_OF = 3
+
 #: What comparing one row costs.
 COMPARED = 1e-6
 
@@ -80,7 +83,7 @@ class Measured(Trial):
 
 @dataclass(frozen=True)
 class Order:
-    """The measured order of a fixed-step method beside its nominal one; ``pairs`` of steps it was fitted to."""
+    """The measured order of a fixed-step method beside its nominal one; ``pairs`` of steps it is the median of."""
 
     method: str
     scalar: str
@@ -110,8 +113,11 @@ class Tradeoff:
 
     @property
     def smallest_judged(self) -> float:
-        """Errors below this cannot be told from the reference's own, or from the rounding of what is compared."""
-        return max(MARGIN * self.reference.error, float(np.finfo(float).eps))
+        """Errors below this cannot be told from the reference's own, or from the rounding of what is compared.
+
+        In two digits, as it is printed, rounded up.
+        """
+        return float(at_most(max(MARGIN * self.reference.error, float(np.finfo(float).eps))))
 
 
 def tradeoff(
@@ -315,7 +321,8 @@ def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
         if slopes:
             nominal = ladder[0].method.traits.order
             assert nominal is not None
-            yield Order(name, scalar, nominal, statistics.median(slopes[-3:]), len(slopes))
+            finest = slopes[-ORDER_OF:]
+            yield Order(name, scalar, nominal, statistics.median(finest), len(finest))
 
 
 def advice(found: Tradeoff, target: float) -> Message:
@@ -323,7 +330,7 @@ def advice(found: Tradeoff, target: float) -> Message:
 
     Nothing is said to be reached but what was measured, with the reference's own error added.
     """
-    known, least, printed_target = found.reference.error, f"{found.smallest_judged:.0e}", f"{target:.0e}"
+    known, least, printed_target = found.reference.error, f"{found.smallest_judged:.1e}", plainly(target)
     if target < found.smallest_judged:
         text = (
             "The reference itself is known to [[known]] only: an error of [[target]] cannot be judged here; choose a "
@@ -362,7 +369,7 @@ def _more(found: Tradeoff, best: Measured, target: float) -> Message:
         return Message("cannot be judged by this reference")
     other = found.cheapest(target)
     if other is None:
-        return Message("costs more than anything tried here can give")
+        return Message("is reached by nothing tried here")
     if other is best:
         return Message("costs nothing extra (it is there already)")
     return _compared(other, best)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, plainly
 from mbsym.model.quantities import time_unit, with_unit
 from mbsym.model.system import System
 from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
@@ -92,7 +92,7 @@ def _drawn(system: System, until: float, tradeoff: Tradeoff, target: float, mode
     axes.set_ylabel(say("seconds of integration"))
     last = with_unit(f"{until:g}", pretty(time_unit(system)))
     axes.set_title(f"{system.name}, {say(Message('t = 0 to [[last]]', last=last))}", loc="left")
-    _line(axes, target, RED, say(Message("target [[error]]", error=f"{target:.0e}")))
+    _line(axes, target, RED, say(Message("target [[error]]", error=plainly(target))))
     finest = min((row.error for row in tradeoff.rows), default=1.0)
     if tradeoff.smallest_judged > finest / 100:
         _line(axes, tradeoff.smallest_judged, GREY, say("limit of the reference"))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, floor, isfinite, log10
+from math import isfinite
 from typing import Any
 
-from mbsym.expressions.message import Message, duration, joined
+from mbsym.expressions.message import Message, at_most, duration, joined
 from mbsym.model.quantities import marked, time_unit, unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.numerics.enclosure.compare import Certificate
@@ -25,14 +25,6 @@ WHY = {
     TOO_DEAR: Message("it takes more work than it may (as many seconds as --certify-seconds says, whatever the work)"),
     INTERRUPTED: Message("interrupted"),
 }
-
-
-def at_most(value: float) -> str:
-    """``3.2e-11``, rounded up: a bound stays one."""
-    if not 0 < value < float("inf"):
-        return f"{value:.1e}"
-    power = floor(log10(value)) - 1
-    return f"{ceil(value / 10.0**power * (1 - 1e-15)) * 10.0**power:.1e}"
 
 
 def certificate_lines(certificate: Certificate, system: System, rows: int) -> Iterator[Message]:

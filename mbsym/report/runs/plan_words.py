@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.expressions.message import Message, duration, joined, worded
+from mbsym.expressions.message import Message, at_most, duration, joined, plainly, worded
 from mbsym.model.quantities import with_unit
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.planning.kinds import Kind
@@ -28,7 +28,6 @@ from mbsym.numerics.planning.plan import (
     Share,
 )
 from mbsym.report.documents import simulation as doc
-from mbsym.report.runs.certificate import at_most
 from mbsym.report.runs.trajectory_csv import shortest
 
 if TYPE_CHECKING:
@@ -158,7 +157,7 @@ def refused_words(refused: Refused, unit: str) -> Message:
 
 def alternative_words(other: Alternative, plan: Plan) -> Message:
     """``1e-07: about 110 µs, 1.2 times as much work (dop853 5e-09)``: by counted work, and seconds in proportion."""
-    target = f"{other.target:.0e}"
+    target = plainly(other.target)
     if other.seconds is None:
         return Message("[[target]]: [[why]]", target=target, why=other.why)
     setting = joined([other.label, *([worded(other.model)] if other.model else [])], ", ")

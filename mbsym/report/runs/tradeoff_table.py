@@ -143,7 +143,7 @@ def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, .
 
 def _error(error: float, smallest_judged: float) -> str:
     """An error that the reference cannot tell from its own is given as a bound."""
-    return f"{error:.1e}" if error > smallest_judged else f"< {smallest_judged:.0e}"
+    return f"{error:.1e}" if error > smallest_judged else f"< {smallest_judged:.1e}"
 
 
 def models_shown(rows: Sequence[ModelError]) -> list[tuple[str, ...]]:

@@ -53,7 +53,7 @@ FINEST, COARSEST = 1e-19, 0.1
 USUAL_WIDTH, NARROWEST, WIDEST = "1e-10", 1e-100, 1e-3
 
 #: What a proof may cost where no seconds are given: counted work, worth about so many seconds.
-WORK = 600.0
+WORK = 200.0
 
 #: What is integrated of a description with speeds.
 DECLARED = "declared"
