@@ -195,13 +195,14 @@ def _equations(solutions: dict[int, Any], system: System) -> Iterator[Inline]:
 def _motion(equilibrium: Equilibrium, system: System) -> Iterator[Inline]:
     items = unperturbed_motion(system)
     inlines: tuple[Inline, ...] = (items, " ") if 0 < len(items.items) <= MOST_COORDINATES else ()
+    held = (" (", Said("'mbsym trim' looks for inputs that hold it"), ")") if system.inputs else ()
     if equilibrium.satisfied:
         yield Phrase((*inlines, Said("satisfies the equations of motion identically")))
     elif equilibrium.impossible:
-        yield Phrase((*inlines, Graded(Said("does not satisfy the equations of motion"), "bad")))
+        yield Phrase((*inlines, Graded(Said("does not satisfy the equations of motion"), "bad"), *held))
     elif len(equilibrium.conditions) <= MOST_CONDITIONS and all(map(is_short, equilibrium.conditions)):
         phrase = joined((Relation(condition, "=", 0) for condition in equilibrium.conditions), ", ")
-        yield Phrase((*inlines, exists_if(equilibrium), " ", phrase))
+        yield Phrase((*inlines, exists_if(equilibrium), " ", phrase, *held))
     else:
         text = "satisfies the equations of motion under conditions; their number: [[count]]"
         conditions = say(text, count=str(len(equilibrium.conditions)))
