@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -366,6 +367,10 @@ def test_whether_inputs_reach_everything_and_whether_a_feedback_was_found(tmp_pa
     start = told(tmp_path, text, "--problems", "1-8")
     control = start.index("Control  Controllability of p, theta by F: yes, for almost all parameters (proved).")
     assert start[control + 1].startswith("A feedback makes the linear equations asymptotically stable")
+    gains = re.fullmatch(r"u = -k z, z = \(p, theta, p', theta'\), k = \[\((.*)\)\]", start[control + 2])
+    assert gains is not None
+    feedback = loads(text).stabilisation.feedback
+    assert [Fraction(x) for x in gains[1].split(", ")] == [*feedback.gains[0]]
     apart = """
 mbsym: 1
 name: Two oscillators

@@ -43,13 +43,16 @@ from mbsym.report.content import (
     Phrase,
     Power,
     Relation,
+    Rows,
     Said,
     Symbol,
     Under,
     Unit,
+    exact,
     joined,
     named,
     say,
+    speeds,
 )
 from mbsym.report.letters import letters_of
 from mbsym.report.sections.canonical import TITLES
@@ -73,6 +76,9 @@ MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 
 #: More letters, or what they stand for in more characters, are left to problem 5.
 MOST_LETTERS, LONGEST_MEANINGS = 12, 200
+
+#: More gains of a feedback are left to problem 8.
+MOST_GAINS = 24
 
 #: What the results of problems are called here.
 TITLES_HERE = {3: "Equations", 4: "Motion", 6: "Stability", 7: "First integrals", 8: "Control"}
@@ -458,6 +464,10 @@ def _control(stabilisation: Stabilisation) -> Iterator[Inline]:
         whole = "A feedback makes the linear equations asymptotically stable at the given values (proved)."
         part = "A feedback makes a part of the linear equations asymptotically stable at the given values (proved)."
         yield Said(part if stabilisation.feedback.of_part else whole)
+        states, gains = stabilisation.feedback.states, stabilisation.feedback.gains
+        if len(states) * len(gains) <= MOST_GAINS:
+            law = {"names": speeds(states), "gains": Rows(tuple(tuple(map(exact, row)) for row in gains))}
+            yield Said("$u = -k z$, $z$ = ([[names]]), $k$ = [[gains]]", law)
 
 
 def _claims(results: Results) -> Iterator[Inline]:
