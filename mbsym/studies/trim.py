@@ -104,7 +104,9 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
 
 def answer(context: Asked, request: Request, trimmed: Trim) -> Answer:
     held = [signal for signal in context.system.inputs if request.solve and signal.name not in request.solve]
-    acting = () if trimmed.impossible else [(name, x) for name, x in trimmed.solved if name in context.system.input_names]
+    acting = (
+        () if trimmed.impossible else [(name, x) for name, x in trimmed.solved if name in context.system.input_names]
+    )
     written = ", ".join(f"{name}: {x.text()}" for name, x in acting if not x.is_zero)
     return Answer(_lines(trimmed, held, written), code=Exit.FAILED if trimmed.impossible else Exit.OK)
 

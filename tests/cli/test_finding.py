@@ -471,3 +471,13 @@ motion: {x: 0}
     first = lines.index("Stability  undecided")
     assert lines[first + 1].startswith("Terms of higher order may decide: give all parameters values")
     assert not [line for line in told(tmp_path, text.replace("b*", "m*")) if "Terms of" in line]
+
+
+def test_a_claim_that_differs_by_little_is_told_by_what(tmp_path: Path) -> None:
+    """T = (J + m l^2) theta'^2/2: the moment of inertia forgotten; of a long difference only that there is one."""
+    claim = "\nclaims:\n  - {claim: kinetic energy, equals: m*l**2*theta_dot**2/2, place: eq. (1)}\n"
+    found = told(tmp_path, PENDULUM + claim, "--problems", "2")
+    assert "eq. (1), kinetic energy: differs; claimed minus derived: at theta'^2: -J/2" in found
+    long = claim.replace("kinetic energy", "force function").replace("theta_dot**2/2", "(cos(theta) - g)**9")
+    lines = told(tmp_path, PENDULUM + long, "--problems", "2", "--force")
+    assert "eq. (1), force function: differs" in lines

@@ -19,7 +19,6 @@ from mbsym.report.content import (
     Said,
     Symbol,
     exact,
-    joined,
     named,
     paragraph,
     ragged,

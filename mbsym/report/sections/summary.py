@@ -56,6 +56,7 @@ from mbsym.report.content import (
 )
 from mbsym.report.letters import letters_of
 from mbsym.report.sections.canonical import TITLES
+from mbsym.report.sections.claims import short_difference
 from mbsym.report.sections.energy import is_felt
 from mbsym.report.sections.equations import are_short, is_short, short_equations, ties
 from mbsym.report.sections.equilibrium import exists_if
@@ -473,16 +474,18 @@ def _control(stabilisation: Stabilisation) -> Iterator[Inline]:
 def _claims(results: Results) -> Iterator[Inline]:
     """How many hold; each that does not."""
     lines = list(map(claim_line, results.analysis.claims))
-    words = [claim.word for claim in lines]
+    words = [line.word for line in lines]
     gravest = next(word for word in (REFUTED, OPEN, HELD) if word in words)
     said: Inline = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
     if gravest != HELD:
         said = claims_counted(words)
     yield Link(Graded(said, grade(gravest)), "claims")
-    for line in lines:
+    for line, claim in zip(lines, results.analysis.claims, strict=True):
         if line.word != HELD:
             place = (line.place, ", ") if line.place else ()
-            yield Phrase((*place, titles([line]), ": ", Graded(Phrase(line.said), grade(line.word))))
+            said = Phrase((*place, titles([line]), ": ", Graded(Phrase(line.said), grade(line.word))))
+            difference = short_difference(claim)
+            yield said if difference is None else Phrase((said, "; ", Said("claimed minus derived"), ": ", difference))
 
 
 def _missing(results: Results) -> Iterator[Fact]:
