@@ -104,10 +104,14 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
 
 def answer(context: Asked, request: Request, trimmed: Trim) -> Answer:
     held = [signal for signal in context.system.inputs if request.solve and signal.name not in request.solve]
-    return Answer(_lines(trimmed, held), code=Exit.FAILED if trimmed.impossible else Exit.OK)
+    acting = (
+        () if trimmed.impossible else [(name, x) for name, x in trimmed.solved if name in context.system.input_names]
+    )
+    written = ", ".join(f"{name}: {x.text()}" for name, x in acting if not x.is_zero)
+    return Answer(_lines(trimmed, held, written), code=Exit.FAILED if trimmed.impossible else Exit.OK)
 
 
-def _lines(trimmed: Trim, held: Sequence[Input]) -> Iterator[Block]:
+def _lines(trimmed: Trim, held: Sequence[Input], written: str) -> Iterator[Block]:
     if trimmed.impossible and trimmed.assumed:
         yield paragraph(Strong(Message("no values make this motion one of the system, where no divisor is 0")))
     elif trimmed.impossible:
@@ -121,6 +125,7 @@ def _lines(trimmed: Trim, held: Sequence[Input]) -> Iterator[Block]:
         (Message("demanded by the declared signs"), [f"{name} = {x} {sign} 0" for name, x, sign in trimmed.signed]),
         (Message("the motion itself has to satisfy"), [f"{x} = 0" for x in trimmed.conditions]),
         (Message("held at their values on the motion"), [f"{signal.name} = {text(signal.held)}" for signal in held]),
+        (Message("in the description"), [f"motion: {{..., {written}}}"] if written else []),
     ):
         if several:
             yield Subheading((title,))

@@ -61,6 +61,9 @@ class Totals:
     sums: dict[str, list[float]] = field(default_factory=dict)
     chunks: list[tuple[Any, Any]] = field(default_factory=list)
     singly: int = 0
+    #: Along one parameter: (value, word's number) of a point, and of the next, where they differ.
+    changes: list[tuple[tuple[float, int], tuple[float, int]]] = field(default_factory=list)
+    last: tuple[float, int] | None = None
 
     def add(self, points: Any, columns: Mapping[str, Any]) -> None:
         """One chunk's points (names, m) and columns."""
@@ -69,6 +72,8 @@ class Totals:
             values = columns[column.name]
             if column.words:
                 self.words += np.bincount(values, minlength=len(WORDS))
+                if len(points) == 1:
+                    self._follow(points[0], values)
             elif column.name == "singly":
                 self.singly += int(np.sum(values))
             elif not column.whole:
@@ -84,6 +89,14 @@ class Totals:
                     accumulator[1] += float(sound.sum())
         if sum(part[0].shape[1] for part in self.chunks) < MOST_COMPARED:
             self.chunks.append((points, columns[self.columns[0].name]))
+
+    def _follow(self, places: Any, words: Any) -> None:
+        """Where one word follows another."""
+        for k in np.flatnonzero(np.diff(words, prepend=words[0] if self.last is None else self.last[1])):
+            before = self.last if k == 0 else (float(places[k - 1]), int(words[k - 1]))
+            assert before is not None
+            self.changes.append((before, (float(places[k]), int(words[k]))))
+        self.last = float(places[-1]), int(words[-1])
 
     def shares(self, random: bool) -> tuple[Share, ...]:
         """Of every word that occurs, most frequent first."""

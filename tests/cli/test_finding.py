@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -366,6 +367,10 @@ def test_whether_inputs_reach_everything_and_whether_a_feedback_was_found(tmp_pa
     start = told(tmp_path, text, "--problems", "1-8")
     control = start.index("Control  Controllability of p, theta by F: yes, for almost all parameters (proved).")
     assert start[control + 1].startswith("A feedback makes the linear equations asymptotically stable")
+    gains = re.fullmatch(r"u = -k z, z = \(p, theta, p', theta'\), k = \[\((.*)\)\]", start[control + 2])
+    assert gains is not None
+    feedback = loads(text).stabilisation.feedback
+    assert [Fraction(x) for x in gains[1].split(", ")] == [*feedback.gains[0]]
     apart = """
 mbsym: 1
 name: Two oscillators
@@ -466,3 +471,13 @@ motion: {x: 0}
     first = lines.index("Stability  undecided")
     assert lines[first + 1].startswith("Terms of higher order may decide: give all parameters values")
     assert not [line for line in told(tmp_path, text.replace("b*", "m*")) if "Terms of" in line]
+
+
+def test_a_claim_that_differs_by_little_is_told_by_what(tmp_path: Path) -> None:
+    """T = (J + m l^2) theta'^2/2: the moment of inertia forgotten; of a long difference only that there is one."""
+    claim = "\nclaims:\n  - {claim: kinetic energy, equals: m*l**2*theta_dot**2/2, place: eq. (1)}\n"
+    found = told(tmp_path, PENDULUM + claim, "--problems", "2")
+    assert "eq. (1), kinetic energy: differs; claimed minus derived: at theta'^2: -J/2" in found
+    long = claim.replace("kinetic energy", "force function").replace("theta_dot**2/2", "(cos(theta) - g)**9")
+    lines = told(tmp_path, PENDULUM + long, "--problems", "2", "--force")
+    assert "eq. (1), force function: differs" in lines

@@ -10,7 +10,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 from click.testing import Result
-from conftest import SHIPPED, invoked
+from conftest import SHIPPED, filed, invoked
 
 from mbsym.report.schemas import schema
 
@@ -252,3 +252,15 @@ def test_motions_are_measured_in_speeds_and_quaternions(tmp_path: Path) -> None:
     invoked(*options, "-o", str(tmp_path / "e"), "--measure", "simulate:e0", code=0)
     assert [float(row["final"]) for row in rows(tmp_path / "e")] == pytest.approx([cos(1)] * 3, abs=1e-7)
     invoked(*options, "--measure", "simulate:e7", code=2)
+
+
+def test_along_one_parameter_it_is_told_where_the_verdict_changes(tmp_path: Path) -> None:
+    """x'' + k x = 0: unstable where k < 0, stable where k > 0; the points are -1, -1/3, 1/3, 1."""
+    text = "mbsym: 1\nname: Oscillator\nparameters: {k: real}\nlinear system: {coordinates: [x], M: [[1]], K: [[k]]}\n"
+    path = filed(tmp_path / "oscillator.yaml", text)
+    out = ("--format", "csv", "--out", tmp_path)
+    done = invoked("sweep", path, "--vary", "k=-1:1:4", *out, code=0)
+    assert "  k = -0.333333 .. 0.333333  unstable, then stable\n  points                     4\n" in done.stdout
+    assert "2 of 4 (50%)" in done.stdout
+    done = invoked("sweep", path, "--vary", "k=1/2:1:4", *out, code=0)
+    assert "then" not in done.stdout

@@ -883,8 +883,26 @@ def _cases_with_zero_roots(
     if theory.zero_power == len(system.cyclic) and theory.variable == "lambda":
         energy = ENERGY_BESIDES if any(case.always for case in lasting) else frozenset()
         verdict = drifting(concluded(energy | {Fact.ROOTS_LEFT}), constant_momenta=False)
+        if lasting and theory.dissipation is not None and theory.dissipation.word is Definite.POSITIVE:
+            return _where_all_is_damped(system, lasting[0].all_of, verdict, known), None
         return (Case(theory.requirements, (), verdict), *lasting, *unstable), None
     return (*lasting, *unstable), None
+
+
+def _where_all_is_damped(
+    system: LinearSystem, positive: Sequence[Requirement], decaying: Verdict, known: Signs
+) -> tuple[Case, ...]:
+    """D > 0, N = 0: K of the coordinates that are not cyclic decides (Kelvin-Chetaev), no Hurwitz minor is needed.
+
+    m lambda + d + i g + k / lambda = 0 of a vector v, with m = v*.M v and so on, has no solution with Re lambda >= 0
+    where k >= 0; lambda = 0 has no Jordan block, as q.D q = 0 of its vector would be asked for.
+    """
+    block = besides_cyclic(system)
+    if not block:
+        return (Case(tuple(positive), (), decaying),)
+    nonsingular = differs(positive[-1].label, positive[-1].polynomial, known)
+    growing = Case((nonsingular,), against(positive, known), concluded({Fact.ROOT_RIGHT}))
+    return Case(tuple(positive), (), decaying), growing
 
 
 def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:

@@ -17,9 +17,12 @@ from mbsym.numerics.ensembles.variation import Grid, Points, Variation
 from mbsym.report.documents import ensemble as doc
 from mbsym.report.documents.base import file_of, finite
 from mbsym.report.runs.trajectory_csv import header, rows
-from mbsym.sweeps.judged import VERDICT
+from mbsym.sweeps.judged import VERDICT, WORDS
 from mbsym.sweeps.points import Column
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
+
+#: More changes along a parameter are left to the table.
+MOST_CHANGES = 6
 
 Part = tuple[Any, Mapping[str, Any]]
 
@@ -145,16 +148,22 @@ def sentences(
         if random:
             text = "[[share]]; stable means proved to be, and nothing weaker"
             yield Message("P(stable)"), Message(text, share=_sweep_words_share(totals.stable(random)))
-        if totals.singly:
-            text = "[[points]] decided one by one, exactly"
-            yield Message("near borders"), Message(text, points=Counted(totals.singly, "point"))
+        if points.grids and len(totals.changes) <= MOST_CHANGES:
+            for (low, before), (high, after) in totals.changes:
+                between = f"{points.names[0]} = {low:.6g} .. {high:.6g}"
+                text = Message("[[before]], then [[after]]", before=Message(WORDS[before]), after=Message(WORDS[after]))
+                yield between, text
     for extent in totals.ranges():
         gaps = {"least": f"{extent.least:.6g}", "most": f"{extent.greatest:.6g}", "mean": f"{extent.mean:.6g}"}
         text = Message("[[least]] to [[most]], mean [[mean]]", **gaps)
         if extent.missing:
             text = Message("[[range]]; none at [[points]]", range=text, points=Counted(extent.missing, "point"))
         yield extent.column, text
-    yield Message("points"), Message("[[count]] [[how]]", count=f"{totals.points:,}", how=_how(points))
+    count = f"{totals.points:,}"
+    if len(points.grids) == 1:
+        yield Message("points"), count
+    else:
+        yield Message("points"), Message("[[count]] [[how]]", count=count, how=_how(points))
     pairs = [(name, value) for name, value in totals.dependence() if abs(value) >= _WORTH_TELLING]
     if pairs and len(points.names) > 1:
         text = "[[values]] (rank correlation with [[column]]: 0, none; 1 or -1, it alone decides)"
@@ -179,7 +188,7 @@ def _sweep_words_share(share: Share) -> str:
         "[[count]] of [[total]] ([[share]])",
         count=f"{share.count:,}",
         total=f"{share.total:,}",
-        share=f"{share.count / max(1, share.total):.4%}",
+        share=f"{100 * share.count / max(1, share.total):.4f}".rstrip("0").rstrip(".") + "%",
     )
     if share.interval is None:
         return message

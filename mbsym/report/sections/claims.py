@@ -27,6 +27,7 @@ from mbsym.report.content import (
     Text,
     paragraph,
 )
+from mbsym.report.sections.equations import is_short
 from mbsym.report.words.claims import ClaimLine, claim_line, counterexample, grade, names_in, repair, titles, together
 
 if TYPE_CHECKING:
@@ -97,18 +98,33 @@ def _difference(result: ClaimResult, number: int) -> Iterator[Block]:
 
 def _part(part: Part, variable: str) -> Iterator[Block]:
     """A part of a difference, and the abbreviations that would explain it."""
+    yield Display(_relation(part, variable))
+    for name, change in part.repairs:
+        words, formula = repair(part, change)
+        yield paragraph(_REPAIRS[words], " ", Name(name), *((":",) if formula is not None else ()))
+        if formula is not None:
+            yield Display(formula)
+
+
+def _relation(part: Part, variable: str) -> Relation:
     at: tuple[Math | str, ...] = ()
     if part.power is not None:
         at = (Text(Said("at"), " "), Power(Name(variable), part.power), ":")
     elif part.factor != 1:
         at = (Text(Said("at"), " "), part.factor, ":")
     same = ("=", _same(part.same_as)) if part.same_as else ()
-    yield Display(Relation(*at, part.difference, *same))
-    for name, change in part.repairs:
-        words, formula = repair(part, change)
-        yield paragraph(_REPAIRS[words], " ", Name(name), *((":",) if formula is not None else ()))
-        if formula is not None:
-            yield Display(formula)
+    return Relation(*at, part.difference, *same)
+
+
+def short_difference(result: ClaimResult) -> Relation | None:
+    """Claimed minus derived where that is one short formula: it fits beside the outcome."""
+    if result.factor is not None or result.claim.kind == "first integral":
+        return None
+    if len(result.parts) == 1 and is_short(result.parts[0].difference):
+        return _relation(result.parts[0], result.claim.variable)
+    if not result.parts and result.difference is not None and is_short(result.difference):
+        return Relation(result.difference)
+    return None
 
 
 def _same(words: str) -> Math:

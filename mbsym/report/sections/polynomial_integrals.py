@@ -60,7 +60,8 @@ def content(results: Results) -> Iterator[Block]:
         return
     result: Polynomials = results.by_problem[9]
     polynomial_integrals = result.integrals
-    yield from listed(polynomial_integrals, result.variables, result.formulas)
+    yield opening(polynomial_integrals, result.variables)
+    yield from listed(polynomial_integrals, result.formulas)
     for level, formulas in zip(result.levels, result.on_levels, strict=True):
         zero, name = level.level, worded(title(level.level))
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
@@ -71,11 +72,9 @@ def content(results: Results) -> Iterator[Block]:
         yield from of_symmetries(result.symmetries)
 
 
-def listed(
-    polynomial_integrals: PolynomialIntegrals, variables: Sequence[Inline], formulas: Sequence[Formula]
-) -> Iterator[Block]:
-    """What is looked for, and each integral."""
-    yield ragged(
+def opening(polynomial_integrals: PolynomialIntegrals, variables: Sequence[Inline]) -> Block:
+    """What is looked for."""
+    return ragged(
         say(
             OPENING,
             degree=str(polynomial_integrals.degree),
@@ -83,6 +82,10 @@ def listed(
         ),
         Said(UNIFORM if polynomial_integrals.grading.homogeneous else NOT_UNIFORM),
     )
+
+
+def listed(polynomial_integrals: PolynomialIntegrals, formulas: Sequence[Formula]) -> Iterator[Block]:
+    """Each integral."""
     for generator, formula in zip(polynomial_integrals.generators, formulas, strict=True):
         yield ragged(say(LISTED, weight=str(generator.weight), name=worded(title(generator))))
         yield _constant(formula)
@@ -90,12 +93,12 @@ def listed(
 
 def of_symmetries(symmetries: Symmetries) -> Iterator[Block]:
     """What each gives, with the integral where problem 7 does not list it; what is known of the list."""
-    yield ragged(Said(symmetry_words.OPENING))
     for symmetry in symmetries.symmetries:
         yield ragged(symmetry_words.gives(symmetry, symmetry_words.field(symmetry)))
         if not symmetry.name:
             yield _constant(symmetry.integral)
     yield from map(ragged, symmetry_words.sentences(symmetries))
+    yield ragged(Said(symmetry_words.LOOKED_FOR))
 
 
 def _constant(formula: Formula) -> Display:

@@ -19,7 +19,6 @@ from mbsym.report.content import (
     Said,
     Symbol,
     exact,
-    joined,
     named,
     paragraph,
     ragged,
@@ -66,9 +65,6 @@ def content(results: Results) -> Iterator[Block]:
     if stabilisation.feedback.of_part or 2 * sum(map(is_velocity, states)) < len(states):
         yield paragraph(Said(STATES, {"names": speeds(states)}))
     yield Display(Relation(Symbol("k"), "=", _rows(stabilisation.feedback.gains)), "feedback")
-    if stabilisation.feedback.characteristic:
-        said = Said("Characteristic polynomial of the closed loop, coefficients from the constant one on:")
-        yield paragraph(said, " ", joined(map(exact, stabilisation.feedback.characteristic), ", "), ".")
     if stabilisation.feedback.lyapunov is not None:
         yield paragraph(Said(LYAPUNOV))
         yield Display(Relation(Symbol("P"), "=", _rows(stabilisation.feedback.lyapunov)), "lyapunov")

@@ -43,16 +43,20 @@ from mbsym.report.content import (
     Phrase,
     Power,
     Relation,
+    Rows,
     Said,
     Symbol,
     Under,
     Unit,
+    exact,
     joined,
     named,
     say,
+    speeds,
 )
 from mbsym.report.letters import letters_of
 from mbsym.report.sections.canonical import TITLES
+from mbsym.report.sections.claims import short_difference
 from mbsym.report.sections.energy import is_felt
 from mbsym.report.sections.equations import are_short, is_short, short_equations, ties
 from mbsym.report.sections.equilibrium import exists_if
@@ -73,6 +77,9 @@ MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 
 #: More letters, or what they stand for in more characters, are left to problem 5.
 MOST_LETTERS, LONGEST_MEANINGS = 12, 200
+
+#: More gains of a feedback are left to problem 8.
+MOST_GAINS = 24
 
 #: What the results of problems are called here.
 TITLES_HERE = {3: "Equations", 4: "Motion", 6: "Stability", 7: "First integrals", 8: "Control"}
@@ -195,13 +202,14 @@ def _equations(solutions: dict[int, Any], system: System) -> Iterator[Inline]:
 def _motion(equilibrium: Equilibrium, system: System) -> Iterator[Inline]:
     items = unperturbed_motion(system)
     inlines: tuple[Inline, ...] = (items, " ") if 0 < len(items.items) <= MOST_COORDINATES else ()
+    held = (" (", Said("'mbsym trim' looks for inputs that hold it"), ")") if system.inputs else ()
     if equilibrium.satisfied:
         yield Phrase((*inlines, Said("satisfies the equations of motion identically")))
     elif equilibrium.impossible:
-        yield Phrase((*inlines, Graded(Said("does not satisfy the equations of motion"), "bad")))
+        yield Phrase((*inlines, Graded(Said("does not satisfy the equations of motion"), "bad"), *held))
     elif len(equilibrium.conditions) <= MOST_CONDITIONS and all(map(is_short, equilibrium.conditions)):
         phrase = joined((Relation(condition, "=", 0) for condition in equilibrium.conditions), ", ")
-        yield Phrase((*inlines, exists_if(equilibrium), " ", phrase))
+        yield Phrase((*inlines, exists_if(equilibrium), " ", phrase, *held))
     else:
         text = "satisfies the equations of motion under conditions; their number: [[count]]"
         conditions = say(text, count=str(len(equilibrium.conditions)))
@@ -457,21 +465,27 @@ def _control(stabilisation: Stabilisation) -> Iterator[Inline]:
         whole = "A feedback makes the linear equations asymptotically stable at the given values (proved)."
         part = "A feedback makes a part of the linear equations asymptotically stable at the given values (proved)."
         yield Said(part if stabilisation.feedback.of_part else whole)
+        states, gains = stabilisation.feedback.states, stabilisation.feedback.gains
+        if len(states) * len(gains) <= MOST_GAINS:
+            law = {"names": speeds(states), "gains": Rows(tuple(tuple(map(exact, row)) for row in gains))}
+            yield Said("$u = -k z$, $z$ = ([[names]]), $k$ = [[gains]]", law)
 
 
 def _claims(results: Results) -> Iterator[Inline]:
     """How many hold; each that does not."""
     lines = list(map(claim_line, results.analysis.claims))
-    words = [claim.word for claim in lines]
+    words = [line.word for line in lines]
     gravest = next(word for word in (REFUTED, OPEN, HELD) if word in words)
     said: Inline = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
     if gravest != HELD:
         said = claims_counted(words)
     yield Link(Graded(said, grade(gravest)), "claims")
-    for line in lines:
+    for line, claim in zip(lines, results.analysis.claims, strict=True):
         if line.word != HELD:
             place = (line.place, ", ") if line.place else ()
-            yield Phrase((*place, titles([line]), ": ", Graded(Phrase(line.said), grade(line.word))))
+            said = Phrase((*place, titles([line]), ": ", Graded(Phrase(line.said), grade(line.word))))
+            difference = short_difference(claim)
+            yield said if difference is None else Phrase((said, "; ", Said("claimed minus derived"), ": ", difference))
 
 
 def _missing(results: Results) -> Iterator[Fact]:

@@ -16,7 +16,7 @@ LISTED = "Weight [[weight]], [[name]]:"
 LEVEL = "Weight [[weight]], where that of weight [[own]] ([[name]]) is zero:"
 #: What the list is about.
 OPENING = (
-    "Polynomials up to weighted degree [[degree]] whose derivatives vanish by the equations of motion; "
+    "Looked for are polynomials up to weighted degree [[degree]] whose derivatives vanish by the equations of motion; "
     "weights of the variables: [[weights]]."
 )
 UNIFORM = "Under these weights the equations are quasi-homogeneous."

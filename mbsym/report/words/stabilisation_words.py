@@ -53,6 +53,8 @@ def sentences(stabilisation: Stabilisation) -> Iterator[Said]:
         yield from _dissipation(damped)
     for control in stabilisation.control:
         yield from _control(control)
+        if control.rank.full and control.rank.locus == Locus():
+            break  # the first is about the whole: so are its parts, which are apart
     if stabilisation.least:
         sets = joined(map(named, stabilisation.least), "; ")
         yield say("The smallest sets of inputs that suffice for almost all parameters (proved): [[sets]].", sets=sets)

@@ -9,11 +9,11 @@ from mbsym.expressions.message import worded
 from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.content import Inline, Name, Relation, Said, Symbol, say
 
-#: In reports: what a symmetry gives.
-OPENING = (
-    "Symmetries (Noether) with fields of degree one in the positions and $\\Gamma$ of degree two, both free of the "
-    "time:"
+LOOKED_FOR = (
+    "Looked for were symmetries (Noether) with fields of degree one in the positions and $\\Gamma$ of degree two, both "
+    "free of the time."
 )
+#: What a symmetry gives.
 KNOWN = "The field [[field]] gives an integral that is known ([[name]])."
 DEPENDS = "The field [[field]] gives no further integral ([[name]]; verified at a random state)."
 GIVES = "The field [[field]] gives a further integral, no function of those known without it (proved):"

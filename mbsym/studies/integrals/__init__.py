@@ -153,19 +153,35 @@ def answer(context: Asked, request: Request, derived: Found) -> Answer:
 
 
 def _lines(derived: Found) -> Iterator[Line | Block]:
-    """The integrals, what is known of them as a whole, and what is there besides."""
+    """The integrals, what is known of them as a whole, what was looked for, and what is there besides."""
     from mbsym.report.content import ragged
-    from mbsym.report.sections.polynomial_integrals import listed
+    from mbsym.report.sections.polynomial_integrals import listed, opening
     from mbsym.report.words.integrals_words import sentences
 
     there, integrals = derived.there, derived.integrals
     formulas = [there.formula(generator.polynomial) for generator in integrals.generators]
-    yield from listed(integrals, integrals.field.variables, formulas)
+    yield from listed(integrals, formulas)
     yield from map(ragged, sentences(integrals))
+    if beyond := _beyond(derived):
+        message = Message("Integrals of problem 7 of a higher weighted degree: [[names]] (--degree).", names=beyond)
+        yield ragged(message)
+    yield opening(integrals, integrals.field.variables)
     for head, texts in _sections(derived):
         yield heading(head)
         for text in texts:
             yield line("    ", text, whole=True)
+
+
+def _beyond(derived: Found) -> str:
+    """Known integrals with their weighted degrees, where these are above what was looked through."""
+    grading, variables = derived.integrals.grading, derived.integrals.field.variables
+    told = []
+    for name, p in derived.there.known:
+        places = [p.context().names().index(x) for x in variables]
+        weight = max(grading.of([powers[k] for k in places]) for powers in p.monoms())
+        if weight > derived.integrals.degree:
+            told.append(f"{name} {weight}")
+    return ", ".join(told)
 
 
 def _sections(derived: Found) -> Iterator[tuple[str, Iterator[str]]]:
