@@ -14,8 +14,8 @@ from mbsym.algebra.program import Program
 from mbsym.expressions import tree
 from mbsym.expressions.message import Message, worded
 from mbsym.formulas.formula import Column, Formula, Matrix
-from mbsym.formulas.latex import latex_names
-from mbsym.formulas.mathml import mathml_names
+from mbsym.formulas.latex import LatexNames
+from mbsym.formulas.mathml import MathNames
 from mbsym.problems.stability.words import Word
 from mbsym.report import content, plain_writer
 from mbsym.report.content import Name, Notation, Relation, Said, Strong, Symbol, paragraph, say
@@ -36,11 +36,11 @@ ON_PAPER_AND_SCREENS = (content.SpeedForm, content.Tensor, content.Points)
 
 
 def in_latex(analysis: mbsym.Analysis, language: str = "", form: Form = Form.REPORT) -> latex.Writer:
-    return latex.Writer(latex_names(analysis.ring), Language(language), Labels("mbsym:pendulum:"), form)
+    return latex.Writer(LatexNames.of(analysis.ring), Language(language), Labels("mbsym:pendulum:"), form)
 
 
 def in_html(analysis: mbsym.Analysis, language: str = "") -> html.Writer:
-    return html.Writer(mathml_names(analysis.ring), Language(language))
+    return html.Writer(MathNames.of(analysis.ring), Language(language))
 
 
 def kinds(union: object) -> Iterator[type]:

@@ -17,7 +17,6 @@ from mbsym.formulas.mathml import (
     MathNames,
     bracketed,
     letter,
-    mathml_names,
     mathml_pieces,
     mi,
     mn,
@@ -210,7 +209,7 @@ class Writer:
 
     @math.register
     def _(self, value: content.Name) -> str:
-        symbol = (self.names if value.ring is None else mathml_names(value.ring))[value.name]
+        symbol = (self.names if value.ring is None else MathNames.of(value.ring))[value.name]
         written = str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
         return written + bracketed(mn(value.at)) if value.at else written
 
@@ -503,7 +502,7 @@ def _anchor(key: str) -> str:
 
 def told_passages(listing: Told[Any], passages: Iterable[Passage], say: Callable[[str], Markup] = escape) -> Markup:
     """A phrase, then the definitions that it introduces, for every passage."""
-    names = mathml_names(listing.ring)
+    names = MathNames.of(listing.ring)
     return Markup("").join(_passage(passage, names, say) for passage in passages)
 
 

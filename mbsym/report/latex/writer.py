@@ -14,7 +14,7 @@ from typing import Any
 from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol, latex_text
+from mbsym.formulas.latex import LatexNames, latex_matrix, latex_symbol, latex_text
 from mbsym.formulas.straight_line import Dialect, short_listing
 from mbsym.formulas.told import Told
 from mbsym.model.system import System
@@ -157,7 +157,7 @@ class Writer:
 
     @math.register
     def _(self, value: content.Name) -> str:
-        symbol = (self.names if value.ring is None else latex_names(value.ring))[value.name]
+        symbol = (self.names if value.ring is None else LatexNames.of(value.ring))[value.name]
         written = symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
         return f"{written}({value.at})" if value.at else written
 
@@ -450,7 +450,7 @@ PARAGRAPH, CLOSING = "\\hangindent=1.2em \\hangafter=1 \\noindent ", "\\par\n"
 
 def paragraphs(listing: Told[Any], passages: Iterable[Passage], escaped: Callable[[str], str]) -> str:
     """Every passage as a paragraph, in one group."""
-    names = latex_names(listing.ring)
+    names = LatexNames.of(listing.ring)
     return OPENING + "".join(PARAGRAPH + _sentence(x, names, escaped) + CLOSING for x in passages) + "}"
 
 
