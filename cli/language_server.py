@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from lsprotocol import types
@@ -105,6 +106,12 @@ def server() -> Server:
     """A server with everything that it can do."""
     made = Server()
 
+    def asked(parameters: Any) -> tuple[tuple[str, int, int], Any]:
+        """The text, its line and column that are asked about, and what was seen of the text."""
+        uri = parameters.text_document.uri
+        text = made.workspace.get_text_document(uri).source
+        return (text, *placed(text, parameters.position)), made.seen.get(uri)
+
     @made.feature(types.TEXT_DOCUMENT_DID_OPEN)
     def opened(parameters: types.DidOpenTextDocumentParams) -> None:
         made.look(parameters.text_document.uri)
@@ -119,10 +126,7 @@ def server() -> Server:
 
     @made.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=[" ", "[", "{"]))
     def complete(parameters: types.CompletionParams) -> list[types.CompletionItem]:
-        uri, position = parameters.text_document.uri, parameters.position
-        text = made.workspace.get_text_document(uri).source
-        line, column = placed(text, position)
-        seen = made.seen.get(uri)
+        place, seen = asked(parameters)
         return [
             types.CompletionItem(
                 label=suggestion.label,
@@ -131,16 +135,13 @@ def server() -> Server:
                 insert_text=suggestion.insert or suggestion.label,
                 sort_text=f"{number:05}",
             )
-            for number, suggestion in enumerate(suggestions(text, line, column, seen.system if seen else None))
+            for number, suggestion in enumerate(suggestions(*place, seen.system if seen else None))
         ]
 
     @made.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(parameters: types.HoverParams) -> types.Hover | None:
-        uri, position = parameters.text_document.uri, parameters.position
-        text = made.workspace.get_text_document(uri).source
-        line, column = placed(text, position)
-        seen = made.seen.get(uri)
-        markdown = explanation(text, line, column, seen.analysis if seen else None)
+        place, seen = asked(parameters)
+        markdown = explanation(*place, seen.analysis if seen else None)
         return None if markdown is None else types.Hover(types.MarkupContent(types.MarkupKind.Markdown, markdown))
 
     return made

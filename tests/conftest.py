@@ -13,8 +13,10 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache, wraps
+from importlib.util import module_from_spec, spec_from_file_location
 from operator import add, mul, sub, truediv
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeVar
 
 import properties  # noqa: F401  (before the command line asks for one of its profiles)
@@ -72,6 +74,36 @@ STATEMENTS = TESTS / "cases" / "statements"
 WITH_BODIES = [path for path in sorted(SHIPPED.glob("*.yaml")) if "\nbodies:" in path.read_text(encoding="utf-8")]
 
 
+#: Eigenvalues -1e6 and -1e-6, beside a slow oscillation.
+STIFF = """
+mbsym: 1
+name: Two particles, one of them in honey
+parameters: {m: 1, k: 1, c: 1e6}
+bodies:
+  - {name: slow, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+  - {name: free, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - spring: {coordinate: y, stiffness: k}
+  - damper: {coordinate: x, coefficient: c}
+initial: {x: 1, y: 1}
+"""
+
+#: x'' - mu (1 - x**2) x' + x = 0
+VAN_DER_POL = """
+mbsym: 1
+name: van der Pol
+parameters: {mu: positive}
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+  - generalized force: {x: mu*(1-x**2)*x_dot}
+values: {mu: 100000}
+initial: {x: {position: 0, velocity: 1/100}}
+"""
+
+
 def system_of(source: str | Path, filename: str = "<string>") -> System:
     """The system of a description, a text or a file, that is read without a mistake."""
     system, complaints = read(source, filename) if isinstance(source, str) else load(source)[:2]
@@ -114,6 +146,16 @@ def filed(path: Path, text: str) -> Path:
     """The path, where now a file holds the text."""
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def imported(path: Path) -> ModuleType:
+    """The module in a file, under a name of its own."""
+    spec = spec_from_file_location(f"{path.stem}_{abs(hash(path))}", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def invoked(*words: object, code: int | None = None, **how: Any) -> Result:

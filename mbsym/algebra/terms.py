@@ -108,3 +108,29 @@ def residue(x: Polynomial, values: Sequence[fmpq_poly] | Mapping[int, fmpq_poly]
         return powers[key]
 
     return evaluated(x, power, lambda c: fmpq_poly([fmpq(c)]), lambda a, b: a * b % modulus) % modulus
+
+
+def convolved(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+    """The coefficients of the product of two polynomials, the lowest first; none where one of them has none."""
+    if not a or not b:
+        return []
+    product = [a[0] * 0] * (len(a) + len(b) - 1)
+    for i, x in enumerate(a):
+        for j, y in enumerate(b):
+            product[i + j] = product[i + j] + x * y
+    return product
+
+
+def fraction_modulo(value: int, prime: int, most: int) -> tuple[int, int] | None:
+    """(n, d) with n = d value modulo the prime, |n| <= most, 0 < d <= most; None where there are none."""
+    if value <= most:
+        return value, 1
+    if prime - value <= most:
+        return value - prime, 1
+    r0, r1, s0, s1 = prime, value, 0, 1
+    while r1 > most:
+        quotient = r0 // r1
+        r0, r1, s0, s1 = r1, r0 - quotient * r1, s1, s0 - quotient * s1
+    if not 0 < abs(s1) <= most:
+        return None
+    return (r1, s1) if s1 > 0 else (-r1, -s1)

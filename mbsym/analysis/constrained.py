@@ -57,12 +57,12 @@ def in_free_coordinates(system: System) -> System:
     if system.speeds or not any(isinstance(constraint, Relation) for constraint in system.constraints):
         return system
     from mbsym.mechanics.constraints.rows import said_rows
-    from mbsym.mechanics.kinematics import Scene
-    from mbsym.mechanics.variables import ring_environment, ring_of
+    from mbsym.mechanics.kinematics import over_ring
+    from mbsym.mechanics.variables import ring_of
 
     free = without_explicit_relations(system)
     ring = ring_of(free)
-    tied = free.constraints and said_rows(Scene(free, ring, ring_environment(free, ring), ring))
+    tied = free.constraints and said_rows(over_ring(free, ring))
     return free if tied else replace(free, constraints=())  # rows that say 0 = 0 followed from what is put in
 
 
@@ -72,13 +72,13 @@ def with_runs_prescribed(system: System) -> System:
     One of these coordinates is  q_s = q_s(0) - sum c_i (q_i - q_i(0))/c_s + P,  P prescribed with the rate w/c_s.
     """
     from mbsym.mechanics.constraints.rows import joined_rows, said_rows
-    from mbsym.mechanics.kinematics import Scene
+    from mbsym.mechanics.kinematics import over_ring
     from mbsym.mechanics.motion import motion_values
-    from mbsym.mechanics.variables import ring_environment, ring_of
+    from mbsym.mechanics.variables import ring_of
 
     ring = ring_of(system)
     signs = {parameter.name: parameter.sign for parameter in system.parameters}
-    rows = joined_rows(ring, said_rows(Scene(system, ring, ring_environment(system, ring), ring)))
+    rows = joined_rows(ring, said_rows(over_ring(system, ring)))
     for k, constraint in enumerate(system.constraints):
         own = [row for row in rows if row.name.constraint == k]
         if len(own) != 1:
@@ -134,12 +134,11 @@ def constraints_of(analysis: Analysis) -> Constraints:
 
 def constraints_in_coordinates(analysis: Analysis) -> Constraints:
     """The same in generalised velocities, where speeds are declared: ranks and integrability are found there."""
-    from mbsym.mechanics.kinematics import Scene
-    from mbsym.mechanics.variables import ring_environment
+    from mbsym.mechanics.kinematics import over_ring
     from mbsym.problems.constraints import constraints
 
     plain = analysis.system.without_speeds
-    return constraints(Scene(plain, analysis.ring, ring_environment(plain, analysis.ring), analysis.ring))
+    return constraints(over_ring(plain, analysis.ring))
 
 
 def equations_of(analysis: Analysis) -> Equations:

@@ -15,11 +15,10 @@ from mbsym.analysis.judge import Judge
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message, joined, worded
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import over_ring
 from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
-from mbsym.mechanics.variables import ring_environment
 from mbsym.model.substitution import with_free_rates
 from mbsym.problems import dissipation, energy, equilibrium, integrals, stability
 from mbsym.problems.checks import EXACT, NUMERICAL
@@ -355,7 +354,7 @@ def analysis(source: Analysis) -> Analysis:
     system = source.system.without_speeds
     ring = source.ring
     if system.motion:
-        plain = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
+        plain = over_ring(system, ring, bodies=False)
         at = unperturbed_with(plain, relations(plain))
         rows = [
             [x.derivative(ring.index("velocity", name)) for name in system.coordinates] for x in form.in_coordinates

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Ring
 from mbsym.analysis import constrained
-from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.variables import ring_environment
+from mbsym.mechanics.kinematics import over_ring
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -113,7 +112,7 @@ def _brackets(analysis: Analysis) -> Check | None:
     from mbsym.problems.canonical import check_brackets
 
     system, ring = analysis.system, analysis.hamilton.hamiltonian.ring
-    scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
+    scene = over_ring(system, ring, bodies=False)
     return check_brackets(poisson_brackets, analysis.hamilton, scene)
 
 

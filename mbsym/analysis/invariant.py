@@ -249,7 +249,8 @@ def write_in(ring: Ring, analysis: Analysis, names: Mapping[str, str]) -> tuple[
     """
     system = analysis.system
     symbols = {symbol.name: symbol.latex for symbol in system.symbols}
-    in_tex, in_page = latex.LatexNames(list(system.coordinates), symbols), mathml.MathNames(system.coordinates)
+    given = {name: latex.given_symbol(text) for name, text in symbols.items()}
+    in_tex, in_page = latex.LatexNames(system.coordinates, given), mathml.MathNames(system.coordinates)
     latex_by_name: dict[str, str] = {}
     page: dict[str, mathml.Symbol] = {}
     for plain, name in names.items():
@@ -267,6 +268,6 @@ def write_in(ring: Ring, analysis: Analysis, names: Mapping[str, str]) -> tuple[
     if latex_by_name or symbols:
         latex.write_as(ring, latex_by_name | symbols)
     if page:
-        mathml.write_as(ring, page)
+        mathml.MathNames.write_as(ring, page)
         python.write_as(ring, {x: re.sub("_dot$", "'", names[x]) for x in page})
     return tuple((plain, name) for plain, name in names.items() if plain != name)

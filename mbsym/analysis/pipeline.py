@@ -29,10 +29,10 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column
 from mbsym.mechanics.constraints.refusal import refuse_constraints
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.states import Oracles
-from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.mechanics.variables import ring_of
 from mbsym.model.substitution import held
 from mbsym.model.system import System
 from mbsym.problems import TITLES, kinematics, knowledge
@@ -238,7 +238,7 @@ class Analysis(Stages):
         if self.system.speeds:
             return self.form.scene(bodies)
         system = self.system if inputs else held(self.system)
-        return Scene(system, self.ring, ring_environment(system, self.ring), self.ring, bodies=bodies)
+        return over_ring(system, self.ring, bodies=bodies)
 
     # --- the numbered problems ---
 

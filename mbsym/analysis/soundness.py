@@ -5,8 +5,8 @@ from __future__ import annotations
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.place import Complaints
-from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.mechanics.kinematics import Scene, over_ring
+from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System
 from mbsym.problems import given_system, knowledge
 from mbsym.problems.constraints import Fault, Unsound, constraints, faults
@@ -24,7 +24,7 @@ def complain_of_constraints(system: System, complaints: Complaints) -> None:
         return
     ring, plain = ring_of(system), system.without_speeds if system.speeds else system
     try:
-        scene = Scene(plain, ring, ring_environment(plain, ring), ring)
+        scene = over_ring(plain, ring)
         detected = faults(scene)
         if system.speeds and system.dependent and not detected:
             detected = _in_speeds(system, ring, scene)
@@ -39,7 +39,7 @@ def complain_of_matrices(system: System, complaints: Complaints) -> None:
     if system.linear is None:
         return
     ring = ring_of(system)
-    scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
+    scene = over_ring(system, ring, bodies=False)
     try:
         for fault in given_system.faults(scene, knowledge.signs(scene)):
             complaints.error(fault.code, fault.message, fault.span, fault.hint or None)

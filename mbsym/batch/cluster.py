@@ -10,13 +10,12 @@ import asyncio
 import logging
 import uuid
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from mbsym.batch.digests import derivation
 from mbsym.batch.isolation import Processes, isolated
 from mbsym.batch.outcome import Outcome, Row
-from mbsym.batch.transport import Budget, Finished, Task, finished_text, read_finished, read_task, task_text
+from mbsym.batch.transport import Budget, Finished, Task
 from mbsym.expressions.message import Message
 
 if TYPE_CHECKING:
@@ -111,9 +110,9 @@ class Cluster:
         from concurrent.futures import Future
 
         future: Future[Finished] = Future()
-        there = self._there.executor.submit(at_worker, task_text(task), budget, derivation(), self._token)
+        there = self._there.executor.submit(at_worker, task, budget, derivation(), self._token)
 
-        def pass_on(done: Future[tuple[str, float]]) -> None:
+        def pass_on(done: Future[Finished]) -> None:
             future.set_result(_finished(done, task))
 
         there.add_done_callback(pass_on)
@@ -158,12 +157,10 @@ def _first_line(error: BaseException) -> str:
     return (str(error).strip() or type(error).__name__).split("\n")[0]
 
 
-def _finished(done: Future[tuple[str, float]], task: Task) -> Finished:
+def _finished(done: Future[Finished], task: Task) -> Finished:
     """What came back, or a row that says why nothing did."""
     try:
-        text, seconds = done.result()
-        finished = read_finished(text)
-        return replace(finished, row=replace(finished.row, seconds=seconds))
+        return done.result()
     except Exception as error:
         if type(error).__name__ == "KilledWorker":
             message = "so many workers were lost over it that the scheduler gave it up"  # how many is its own setting
@@ -180,16 +177,12 @@ def _finished(done: Future[tuple[str, float]], task: Task) -> Finished:
 _RUNNING: dict[str, Processes] = {}
 
 
-def at_worker(task: str, budget: Budget, version: str, token: str) -> tuple[str, float]:
-    """What becomes of a task, as text, and the seconds that it took.
-
-    Raises RuntimeError where this worker is of another version.
-    """
+def at_worker(task: Task, budget: Budget, version: str, token: str) -> Finished:
+    """What becomes of a task.  Raises RuntimeError where this worker is of another version."""
     if derivation() != version:
         raise RuntimeError("a worker has another version of mbsym")
     processes = _RUNNING.setdefault(token, Processes())
-    finished = isolated(read_task(task), budget, processes)
-    return finished_text(finished), finished.row.seconds
+    return isolated(task, budget, processes)
 
 
 def end(token: str) -> None:

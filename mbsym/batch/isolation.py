@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 from mbsym.batch.outcome import Outcome, Row
-from mbsym.batch.transport import MALFORMED, Budget, Finished, Task, read_finished, task_text
+from mbsym.batch.transport import Budget, Finished, Task
 from mbsym.batch.worker import OUT_OF_MEMORY, SINGLE
 from mbsym.expressions.message import Message, joined
 
@@ -63,7 +64,7 @@ class Fresh:
 
     def talk(self, seconds: float | None) -> tuple[int | None, bytes, bytes] | None:
         try:
-            answer, said = self._process.communicate(task_text(self._task).encode(), timeout=seconds)
+            answer, said = self._process.communicate(pickle.dumps(self._task), timeout=seconds)
         except subprocess.TimeoutExpired:
             self.kill()
             self._process.communicate()
@@ -147,8 +148,9 @@ def _ran(task: Task, budget: Budget, processes: Processes) -> Finished:
         return _failed(task, Outcome.TIMEOUT, Message("stopped after [[seconds]] s", seconds=f"{budget.seconds:g}"))
     code, answer, said = ended
     if code == 0:
-        with suppress(*MALFORMED):
-            return read_finished(answer)
+        with suppress(Exception):  # whatever stands there is no answer
+            finished: Finished = pickle.loads(answer)
+            return finished
     if processes.closed:
         return _failed(task, Outcome.INTERRUPTED)
     return _ended(task, budget, code, said.decode("utf-8", "replace"))

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import gc
 import os
+import pickle
 import select
 import signal
 import socket
@@ -22,7 +23,7 @@ import threading
 from contextlib import suppress
 from typing import IO
 
-from mbsym.batch.transport import BatchOptions, Task, task_text
+from mbsym.batch.transport import BatchOptions, Task
 from mbsym.batch.worker import PENDULUM, SINGLE, attend
 
 #: A worker gets: its task, where the answer goes, where complaints go, its lifeline; its nurse, where to report.
@@ -86,7 +87,7 @@ class Forked:
         self._closed = False
         try:
             with tempfile.TemporaryFile() as content:
-                content.write(task_text(task).encode())
+                pickle.dump(task, content)
                 content.seek(0)
                 handles = [content.fileno(), self._answer.fileno(), self._said.fileno(), inner, report]
                 socket.send_fds(line, [str(memory or 0).encode()], handles)

@@ -1,11 +1,9 @@
-"""Tasks and what becomes of them as JSON: what goes through a pipe, and rows as they are kept in files."""
+"""What is to be done with one description, what it may cost, and what comes back; rows as they are kept in files."""
 
 from __future__ import annotations
 
-import base64
-import json
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from msgspec import Struct, convert
@@ -16,41 +14,6 @@ from mbsym.report.documents.base import plain
 
 #: What a reader of foreign data has to expect.
 MALFORMED = (ValueError, TypeError, KeyError, AttributeError, RecursionError)
-
-
-def task_text(task: Task) -> str:
-    return json.dumps(asdict(task) | {"data": base64.b64encode(task.data).decode()})
-
-
-def read_task(text: str) -> Task:
-    document = json.loads(text)
-    options = document["options"]
-    problems = None if options["problems"] is None else tuple(options["problems"])
-    return Task(
-        document["file"],
-        document["folder"],
-        base64.b64decode(document["data"]),
-        BatchOptions(tuple(options["formats"]), problems, options["terms"], options["angles"], options["detail"]),
-        document["known"],
-    )
-
-
-def finished_text(finished: Finished) -> str:
-    return json.dumps(
-        {
-            "row": row_data(finished.row),
-            "files": {name: _content_data(content) for name, content in finished.files.items()},
-            "meaning": finished.meaning,
-            "same": finished.same,
-        }
-    )
-
-
-def read_finished(text: str | bytes) -> Finished:
-    """Raises one of MALFORMED where it is something else."""
-    document = json.loads(text)
-    files = {str(name): _read_content(content) for name, content in document["files"].items()}
-    return Finished(read_row(document["row"]), files, str(document["meaning"]), bool(document["same"]))
 
 
 def _messages(value: object) -> Iterator[Message]:
@@ -91,14 +54,6 @@ def _read_sentence(sentence: Any) -> str:
     return Message(str(sentence["text"]), **{name: _read_sentence(gap) for name, gap in sentence["gaps"].items()})
 
 
-def _content_data(content: str | bytes) -> str | dict[str, str]:
-    return content if isinstance(content, str) else {"base64": base64.b64encode(content).decode()}
-
-
-def _read_content(content: Any) -> str | bytes:
-    return base64.b64decode(content["base64"], validate=True) if isinstance(content, dict) else str(content)
-
-
 def row_data(row: Row) -> dict[str, Any]:
     """A row without what differs from batch to batch: its seconds, and whether it was up to date."""
     data: dict[str, Any] = plain(row)
@@ -126,7 +81,7 @@ def read_row(data: Mapping[str, Any]) -> Row:
     )
 
 
-# What is to be done with one description, what it may cost, and what comes back: plain data that travels.
+# Plain data that travels, pickled: both ends have the same version.
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """The process of one description: ``python -m mbsym.batch.worker MEMORY LIFELINE``.
 
-A task comes on standard input, what became of it goes to standard output, both as JSON.  MEMORY is a bound in bytes, or
+A task comes on standard input, what became of it goes to standard output, both pickled.  MEMORY is a bound in bytes, or
 0; LIFELINE the number of a pipe whose other end the batch holds: when the batch is gone, however it went, this process
 ends, too.
 """
@@ -8,6 +8,7 @@ ends, too.
 from __future__ import annotations
 
 import os
+import pickle
 import sys
 import traceback
 from contextlib import suppress
@@ -46,11 +47,10 @@ def attend(memory: int, lifeline: int, answer: int) -> NoReturn:
     try:
         hang_on(lifeline)
         bounded(memory)
-        from mbsym.batch.transport import finished_text, read_task
         from mbsym.batch.work import work
 
-        with open(0, encoding="utf-8", closefd=False) as task, open(answer, "w", encoding="utf-8") as out:
-            out.write(finished_text(work(read_task(task.read()))))
+        with open(0, "rb", closefd=False) as task, open(answer, "wb") as out:
+            pickle.dump(work(pickle.load(task)), out)
         code = 0
     except MemoryError:
         code = OUT_OF_MEMORY

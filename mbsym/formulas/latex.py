@@ -16,15 +16,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
-from weakref import WeakKeyDictionary
 
-from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.rates import derivative_of
 from mbsym.expressions.table import Tabulated
-from mbsym.formulas.letters import LetterRing, lettered
-from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
+from mbsym.formulas.letters import lettered
+from mbsym.formulas.names import LOWER_GREEK, greek
 from mbsym.formulas.shape import forget_printed, length, present, printed
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
+from mbsym.formulas.typeset import Layout, Names, split
 
 _VARIANTS = {"phi": "varphi", "epsilon": "varepsilon"}
 #: Greek letters that LaTeX has no command for: they look Latin.
@@ -85,15 +85,9 @@ class Symbol:
 @lru_cache(4096)
 def latex_symbol(name: str) -> Symbol:
     """theta1 -> \\theta_{1}, Jx -> J_{x}, p_max -> p_{\\mathrm{max}}, mass -> \\mathit{mass}."""
-    split = parts(name)
-    if split.greek:
-        return Symbol(_greek_command(split.greek), _index(split.indices))
-    stem, indices = split.stem, list(split.indices)
-    match = re.fullmatch(r"([A-Z])([a-z]{1,2}|[A-Z])|([a-z])([a-z])", stem)
-    if match:
-        stem, first = (match[1], match[2]) if match[1] else (match[3], match[4])
-        indices.insert(0, first)
-    return Symbol(stem if len(stem) == 1 else f"\\mathit{{{stem}}}", _index(indices))
+    whole = split(name)
+    plain = whole.stem if len(whole.stem) == 1 else f"\\mathit{{{whole.stem}}}"
+    return Symbol(_greek_command(whole.greek) if whole.greek else plain, _index(whole.indices))
 
 
 def _index(indices: Iterable[str]) -> str:
@@ -116,45 +110,22 @@ def _greek_command(letter: str) -> str:
     return "\\" + (_VARIANTS.get(letter, letter) if letter in LOWER_GREEK else letter)
 
 
-class LatexNames:
-    """One renaming for a system: no two names look alike (``Jx`` and ``J_x`` do not both become J with index x)."""
+class LatexNames(Names[Symbol]):
+    symbol = staticmethod(latex_symbol)
 
-    def __init__(self, names: Iterable[str], given: Mapping[str, str] | None = None) -> None:
-        self._given = given = given or {}
-        ordered = list(dict.fromkeys([*given, *names]))  # a given symbol is nobody else's
-        symbols = {name: _given(given[name]) if name in given else latex_symbol(name) for name in ordered}
-        shown = injective([str(symbols[name]) for name in ordered], str)
-        first: dict[str, str] = {}
-        for name in ordered:
-            first.setdefault(str(symbols[name]), name)
-        plain = {name: Symbol(f"\\mathtt{{{_escaped(name)}}}") for name in ordered}
-        assert len(shown) == len(first)
-        self._symbols = {name: symbols[name] if first[str(symbols[name])] == name else plain[name] for name in ordered}
-
-    def __getitem__(self, name: str) -> Symbol:
-        known = self._symbols.get(name)
-        return latex_symbol(name) if known is None else known
-
-    def beside(self, more: Iterable[str]) -> LatexNames:
-        """These names and others, which do not look like them."""
-        return LatexNames([*self._symbols, *more], self._given)
-
-
-def _escaped(name: str) -> str:
-    return name.replace("_", r"\_")
-
-
-_NAMES: WeakKeyDictionary[Ring, LatexNames] = WeakKeyDictionary()
+    @staticmethod
+    def verbatim(name: str) -> Symbol:
+        escaped = name.replace("_", r"\_")
+        return Symbol(f"\\mathtt{{{escaped}}}")
 
 
 def write_as(ring: Ring, spellings: Mapping[str, str]) -> None:
     """From now on names of the ring are written in LaTeX as ``spellings``, in every formula."""
-    kinds = ("coordinate", "prescribed", "parameter")
-    _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], spellings)
+    LatexNames.write_as(ring, {name: given_symbol(text) for name, text in spellings.items()})
     forget_printed()
 
 
-def _given(text: str) -> Symbol:
+def given_symbol(text: str) -> Symbol:
     """``d_{C1}`` as a stem and its index; ``(\\sin \\theta_{1})``, whose index is not of the whole, as a stem."""
     match = re.fullmatch(r"(.*[^_\s])\s*_\s*(\{[^{}]*\}|[^\s{}()])\s*", text)
     if match is None or match[1].count("{") != match[1].count("}"):
@@ -162,25 +133,13 @@ def _given(text: str) -> Symbol:
     return Symbol(match[1].strip(), match[2].strip("{}"))
 
 
-def latex_names(ring: Ring) -> LatexNames:
-    """The ring's renaming, made once; a part of a ring has the names of the whole."""
-    ring = ring.whole if isinstance(ring, ParameterRing) else ring
-    if isinstance(ring, LetterRing):
-        return _NAMES.get(ring) or _NAMES.setdefault(ring, latex_names(ring.whole).beside(ring.letters))
-    if ring not in _NAMES:
-        kinds = ("coordinate", "prescribed", "parameter")
-        _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)])
-    return _NAMES[ring]
-
-
-class LatexPrinter:
+class LatexPrinter(Layout):
     def __init__(self, ring: Ring, breaks: bool = False) -> None:
-        self.ring = ring
+        super().__init__(ring)
         self.breaks = breaks
         self._whole = LatexPrinter(ring) if breaks else self
-        self.names = latex_names(ring)
+        self.names = LatexNames.of(ring)
         self._atoms: dict[int, tuple[str, str]] = {}
-        self._heights: dict[Sum, int] = {}
         self._high: dict[Sum, bool] = {}
 
     def sum(self, shape: Sum, depth: int = 0, penalty: int = 0) -> str:
@@ -202,17 +161,13 @@ class LatexPrinter:
         Sines and cosines stand last.
         """
         top, bottom = product.magnitude
-        over = self._readable(product.over)
+        inside, over = self.inside_and_behind(product)
         if product.under:
-            inside = [f for f in over if isinstance(f.base, int) and self._is_parameter(f.base)]
-            if len(over) == 1 and not inside and isinstance(over[0].base, int):
-                inside = over
-            over = [f for f in over if f not in inside]
             number = [str(top)] if top != 1 or not inside else []
             below = [str(bottom)] if bottom != 1 else []
             numerator = _joined(number + [self.factor(f, depth) for f in inside])
             alone = len(product.under) == 1 and not below
-            denominator = _joined(below + [self._denominator(f, alone) for f in self._readable(product.under)])
+            denominator = _joined(below + [self._denominator(f, alone) for f in self.readable(product.under)])
             pieces = [f"\\frac{{{numerator}}}{{{denominator}}}"]
         elif bottom != 1:
             pieces = [f"\\frac{{{top}}}{{{bottom}}}"]
@@ -220,21 +175,9 @@ class LatexPrinter:
             pieces = [str(top)] if top != 1 or not over else []
         return _joined(pieces + [self.factor(f, depth) for f in over])
 
-    def _readable(self, factors: Iterable[Factor]) -> list[Factor]:
-        """Sines and cosines last: after ``\\cos x`` a factor s or (a + b) would read as a part of the argument."""
-        return sorted(factors, key=self._is_sine)
-
-    def _is_sine(self, factor: Factor) -> bool:
-        if isinstance(factor.base, Wave):
-            return True
-        return isinstance(factor.base, int) and self.ring.generators[factor.base].kind in _COMMANDS
-
     def runs_on(self, product: Product) -> bool:
         """Whether it ends in a function without brackets, whose argument would seem to go on."""
-        return any(self._is_sine(factor) for factor in product.over)
-
-    def _is_parameter(self, index: int) -> bool:
-        return self.ring.generators[index].kind == "parameter"
+        return any(self.is_sine(factor) for factor in product.over)
 
     def _denominator(self, factor: Factor, alone: bool) -> str:
         """Inside a fraction's denominator nothing can break, and a lone bracket needs no brackets."""
@@ -248,7 +191,7 @@ class LatexPrinter:
         if isinstance(factor.base, Wave):
             return self.wave(factor.base, factor.exponent)
         brackets = _HIGH_BRACKETS if self._is_high(factor.base) else _BRACKETS
-        opening, closing = brackets[min(self._height(factor.base), len(brackets)) - 1]
+        opening, closing = brackets[min(self.height(factor.base), len(brackets)) - 1]
         raised = f"^{{{factor.exponent}}}" if factor.exponent != 1 else ""
         return f"{opening}{self._bracketed(factor.base, depth + 1)}{closing}{raised}"
 
@@ -257,23 +200,7 @@ class LatexPrinter:
             return self.sum(shape)
         if length(self.ring, shape) <= UNBROKEN:
             return self._whole.sum(shape)
-        return self.sum(shape, depth, LAST_RESORT if self._is_coefficient(shape) else 60 * depth)
-
-    def _is_coefficient(self, shape: Sum) -> bool:
-        """Whether nothing in it moves."""
-        return all(self._rests(factor.base) for term in shape.terms for factor in (*term.over, *term.under))
-
-    def _rests(self, base: int | Wave | Sum) -> bool:
-        if isinstance(base, Sum):
-            return self._is_coefficient(base)
-        return isinstance(base, int) and self._is_parameter(base)
-
-    def _height(self, shape: Sum) -> int:
-        """How deeply brackets are nested, this one included."""
-        if shape not in self._heights:
-            inner = (f.base for term in shape.terms for f in term.over)
-            self._heights[shape] = 1 + max(map(self._height_of_base, inner), default=0)
-        return self._heights[shape]
+        return self.sum(shape, depth, LAST_RESORT if self.is_coefficient(shape) else 60 * depth)
 
     def _is_high(self, shape: Sum) -> bool:
         """Whether fractions stand in it."""
@@ -282,10 +209,9 @@ class LatexPrinter:
             self._high[shape] = any(term.under for term in shape.terms) or any(map(self._is_high, inner))
         return self._high[shape]
 
-    def _height_of_base(self, base: int | Wave | Sum) -> int:
-        if isinstance(base, Sum):
-            return self._height(base)
-        return int(isinstance(base, Wave) and len(base.angle) > 1)
+    def height_of_base(self, base: int | Wave | Sum) -> int:
+        """A wave of several angles has brackets, too."""
+        return int(len(base.angle) > 1) if isinstance(base, Wave) else super().height_of_base(base)
 
     def atom(self, index: int, exponent: int = 1) -> str:
         if index not in self._atoms:

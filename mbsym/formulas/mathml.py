@@ -9,20 +9,20 @@ by a program, is what is meant.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from html import escape
 from typing import Any
-from weakref import WeakKeyDictionary
 
-from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.rates import derivative_of
 from mbsym.expressions.table import Tabulated
-from mbsym.formulas.letters import LetterRing, lettered
+from mbsym.formulas.letters import lettered
 from mbsym.formulas.names import greek, parts
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or, leaves
+from mbsym.formulas.typeset import Layout, Names, split
 
 #: Brackets with more symbols than this, or of more letters, may be broken; those of coefficients, made of parameters,
 #: are kept longer.
@@ -125,15 +125,8 @@ class Symbol:
 
 def mathml_symbol(name: str) -> Symbol:
     """theta1 -> theta with index 1, Jx -> J with index x, p_max -> p with index max, mass -> mass."""
-    split = parts(name)
-    if split.greek:
-        return Symbol(mi(letter(split.greek)), _index(split.indices))
-    stem, indices = split.stem, list(split.indices)
-    match = re.fullmatch(r"([A-Z])([a-z]{1,2}|[A-Z])|([a-z])([a-z])", stem)
-    if match:
-        stem, first = (match[1], match[2]) if match[1] else (match[3], match[4])
-        indices.insert(0, first)
-    return Symbol(mi(stem), _index(indices))
+    whole = split(name)
+    return Symbol(mi(letter(whole.greek) if whole.greek else whole.stem), _index(whole.indices))
 
 
 def letter(name: str) -> str:
@@ -169,47 +162,12 @@ def _index(indices: Iterable[str]) -> str:
     return written[0] if len(written) == 1 else f"<mrow>{''.join(written)}</mrow>"
 
 
-class MathNames:
-    """One renaming for a system: no two names look alike; one that would is written out as it was declared."""
+class MathNames(Names[Symbol]):
+    symbol = staticmethod(mathml_symbol)
 
-    def __init__(self, names: Iterable[str], given: Mapping[str, Symbol] | None = None) -> None:
-        taken: set[str] = set()
-        self._symbols: dict[str, Symbol] = {}
-        self._given = given = given or {}
-        for name in dict.fromkeys([*given, *names]):
-            symbol = given[name] if name in given else mathml_symbol(name)
-            if str(symbol) in taken:
-                symbol = Symbol(f'<mi class="verbatim">{escape(name)}</mi>')
-            taken.add(str(symbol))
-            self._symbols[name] = symbol
-
-    def __getitem__(self, name: str) -> Symbol:
-        known = self._symbols.get(name)
-        return mathml_symbol(name) if known is None else known
-
-    def beside(self, more: Iterable[str]) -> MathNames:
-        """These names and others, which do not look like them."""
-        return MathNames([*self._symbols, *more], self._given)
-
-
-_NAMES: WeakKeyDictionary[Ring, MathNames] = WeakKeyDictionary()
-
-
-def write_as(ring: Ring, symbols: Mapping[str, Symbol]) -> None:
-    """From now on names of the ring are written in MathML as ``given``, in every formula."""
-    kinds = ("coordinate", "prescribed", "parameter")
-    _NAMES[ring] = MathNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], symbols)
-
-
-def mathml_names(ring: Ring) -> MathNames:
-    """The ring's renaming, made once; a part of a ring has the names of the whole."""
-    ring = ring.whole if isinstance(ring, ParameterRing) else ring
-    if isinstance(ring, LetterRing):
-        return _NAMES.get(ring) or _NAMES.setdefault(ring, mathml_names(ring.whole).beside(ring.letters))
-    if ring not in _NAMES:
-        kinds = ("coordinate", "prescribed", "parameter")
-        _NAMES[ring] = MathNames(["t", *(g.name for g in ring.generators if g.kind in kinds)])
-    return _NAMES[ring]
+    @staticmethod
+    def verbatim(name: str) -> Symbol:
+        return Symbol(f'<mi class="verbatim">{escape(name)}</mi>')
 
 
 # --- formulas ---------------------------------------------------------------------------------------------------------
@@ -232,12 +190,11 @@ def shape_of(ring: Ring, polynomial: Polynomial) -> Sum:
     return present(ring, polynomial, angles_or("shorter"))
 
 
-class MathPrinter:
+class MathPrinter(Layout):
     def __init__(self, ring: Ring) -> None:
-        self.ring = ring
-        self.names = mathml_names(ring)
+        super().__init__(ring)
+        self.names = MathNames.of(ring)
         self._atoms: dict[tuple[int, int], str] = {}
-        self._heights: dict[Sum, int] = {}
 
     def sum(self, shape: Sum) -> str:
         return "".join(self._sum(shape, False))
@@ -263,17 +220,13 @@ class MathPrinter:
     def _product(self, product: Product, breaks: bool) -> list[str]:
         """Without its sign: number and parameters as one fraction if there is a denominator, then the rest."""
         top, bottom = product.magnitude
-        over = self._readable(product.over)
+        inside, over = self.inside_and_behind(product)
         head = ""
         if product.under:
-            inside = [f for f in over if isinstance(f.base, int) and self._is_parameter(f.base)]
-            if len(over) == 1 and not inside and isinstance(over[0].base, int):
-                inside = over
-            over = [f for f in over if f not in inside]
             above = [mn(top)] if top != 1 or not inside else []
             below = [mn(bottom)] if bottom != 1 else []
             alone = len(product.under) == 1 and not below
-            below += [self._denominator(f, alone) for f in self._readable(product.under)]
+            below += [self._denominator(f, alone) for f in self.readable(product.under)]
             head = fraction(self._joined(above + [self.factor(f) for f in inside]), self._joined(below))
         elif bottom != 1:
             head = f"<mfrac>{mn(top)}{mn(bottom)}</mfrac>"
@@ -295,18 +248,6 @@ class MathPrinter:
             text += (_times(before, factor) if before else "") + factor
         return text
 
-    def _readable(self, factors: Iterable[Factor]) -> list[Factor]:
-        """Sines and cosines last: after ``cos x`` a factor s or (a + b) would read as a part of the argument."""
-        return sorted(factors, key=self._is_sine)
-
-    def _is_sine(self, factor: Factor) -> bool:
-        if isinstance(factor.base, Wave):
-            return True
-        return isinstance(factor.base, int) and self.ring.generators[factor.base].kind in _TRIGONOMETRIC
-
-    def _is_parameter(self, index: int) -> bool:
-        return self.ring.generators[index].kind == "parameter"
-
     def _denominator(self, factor: Factor, alone: bool) -> str:
         if alone and factor.exponent == 1 and isinstance(factor.base, Sum):
             return self.sum(factor.base)
@@ -326,7 +267,7 @@ class MathPrinter:
             return [self.factor(factor)]
         if leaves(factor.base) <= LONG_BRACKET and len(_TAG.sub("", self.sum(factor.base))) <= WIDE_BRACKET:
             return [self.factor(factor)]
-        if self._constant(factor.base) and leaves(factor.base) <= LONG_COEFFICIENT:
+        if self.is_coefficient(factor.base) and leaves(factor.base) <= LONG_COEFFICIENT:
             return [self.factor(factor)]
         pair = self._pair(factor.base)
         pieces = self._sum(factor.base, True)
@@ -335,22 +276,8 @@ class MathPrinter:
         pieces[-1] += end if factor.exponent == 1 else f"<msup>{end}{mn(factor.exponent)}</msup>"
         return pieces
 
-    def _constant(self, shape: Sum) -> bool:
-        """Whether it is made of parameters only."""
-        bases = [f.base for term in shape.terms for f in (*term.over, *term.under)]
-        return all(
-            self._constant(x) if isinstance(x, Sum) else isinstance(x, int) and self._is_parameter(x) for x in bases
-        )
-
     def _pair(self, shape: Sum) -> str:
-        return _BRACKETS[(self._height(shape) - 1) % len(_BRACKETS)]
-
-    def _height(self, shape: Sum) -> int:
-        """How deeply brackets are nested, this one included."""
-        if shape not in self._heights:
-            inner = (f.base for term in shape.terms for f in term.over if isinstance(f.base, Sum))
-            self._heights[shape] = 1 + max(map(self._height, inner), default=0)
-        return self._heights[shape]
+        return _BRACKETS[(self.height(shape) - 1) % len(_BRACKETS)]
 
     def atom(self, index: int, exponent: int = 1) -> str:
         """A generator to a power."""

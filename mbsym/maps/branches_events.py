@@ -142,9 +142,10 @@ class _Reduction:
         if first and curved:
             more_above = first * curved < 0
             return self.found(Event.FOLD, more_above, coefficients)
-        if not first and curved:
+        if not first:
             q_p = self.solved([-x for x in by_p])
             g_yp = self.field.dot(self.w, self.mixed(self.v)) + self.field.dot(self.w, self.second(self.v, q_p))
+        if not first and curved:
             g_pp = self.field.dot(self.w, self.twice_by_p())
             g_pp += 2 * self.field.dot(self.w, self.mixed(q_p)) + self.field.dot(self.w, self.second(q_p, q_p))
             split = self.sign((g_yp * g_yp - g_yy * g_pp) % self.modulus)
@@ -158,8 +159,6 @@ class _Reduction:
         coefficients.append(("g_yyy", g_yyy % self.modulus))
         if first:
             return self.found(Event.STEEP, True, coefficients) if cubic else _unnamed()
-        q_p = self.solved([-x for x in by_p])
-        g_yp = self.field.dot(self.w, self.mixed(self.v)) + self.field.dot(self.w, self.second(self.v, q_p))
         crossing = self.sign(g_yp % self.modulus)
         coefficients.append(("g_yp", g_yp % self.modulus))
         return self.found(Event.PITCHFORK, crossing * cubic < 0, coefficients) if crossing and cubic else _unnamed()

@@ -46,7 +46,15 @@ from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Border, Judged, jumps, verdict_at
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.enclosed import eigenvalues, on_axis, spectrum
-from mbsym.problems.stability.exact import ExactPoint, PointVerdict, RationalPoint, evaluated, inertia, verdict_over
+from mbsym.problems.stability.exact import (
+    ExactPoint,
+    PointVerdict,
+    RationalPoint,
+    evaluated,
+    inertia,
+    state_at,
+    verdict_over,
+)
 from mbsym.problems.stability.linear_form import LinearSystem, Matrix, is_zero, state_matrix
 from mbsym.problems.stability.verdict import Verdict, combine
 from mbsym.problems.stability.words import Because, Word
@@ -150,9 +158,7 @@ def _has_block(part: LinearSystem, point_verdict: PointVerdict, roots: RootCount
         return False
     if point_verdict.verdict.because(Because.JORDAN_BLOCK) and roots.zero < 2:
         return True
-    m, d, g, k, n = (evaluated(matrix, at) for matrix in part.matrices)
-    a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), part.following)
-    return counted(a.minpoly()).imaginary_multiplicity > 1
+    return counted(state_at(part, at).minpoly()).imaginary_multiplicity > 1
 
 
 # Exact points of a plane beside an irrational constant c: fields and signs of polynomials p(x, y, c).

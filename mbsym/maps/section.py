@@ -173,17 +173,9 @@ def _section(
     irrational: list[int],
 ) -> Section:
     """The section with a constant; what else is irrational joins ``irrational`` (generators of the ring)."""
-    with analysis.strictly():
-        linear, motion = analysis.judgeable, analysis.equilibrium
-    scene, chosen = analysis.parameters_scene, [axis.name for axis in axes]
-    numbers = numbers_given(analysis, chosen, settings, motion)
+    images, numbers, parts, balance, law = _prepared(analysis, axes, settings, constant)
+    linear, motion = analysis.judgeable, analysis.equilibrium
     complaints: list[Complaint] = []
-    context = context_of(chosen, constant)
-    solved = {name: value.polynomial for name, value in motion.solved}
-    images = Images(scene, chosen, context, numbers, solved, constant)
-    parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
-    known = {name: x for name, x in numbers.items() if name in analysis.system.parameter_names}
-    balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
     undefined: list[Polynomial] = []
     systems = []
     for part in parts:
@@ -200,7 +192,7 @@ def _section(
         undefined += [x for x in _carried(images, assumed.polynomial) if not x.is_constant()]
     return Section(
         tuple(axes),
-        context,
+        images.context,
         tuple(systems),
         tuple(part.coordinates for part in parts),
         law.everywhere,
@@ -220,19 +212,26 @@ def unmade(
 
     Raises Unfit as ``section`` does, but for what the matrices hold.
     """
+    images, numbers, parts, balance, law = _prepared(analysis, axes, settings, None)
+    _motion_exists(analysis.equilibrium, images)
+    names = tuple(part.coordinates for part in parts)
+    plain = Section(tuple(axes), images.context, (), names, law.everywhere, law, (), numbers, numbers, images)
+    return plain, tuple(part.at(balance) for part in parts)
+
+
+def _prepared(
+    analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fraction], constant: Constant | None
+) -> tuple[Images, dict[str, Fraction], Sequence[Prepared], Balance, Law]:
+    """What formulas become in the axes, the numbers of all else, the parts, and what is known of the energy there."""
     with analysis.strictly():
         linear, motion = analysis.judgeable, analysis.equilibrium
     scene, chosen = analysis.parameters_scene, [axis.name for axis in axes]
     numbers = numbers_given(analysis, chosen, settings, motion)
-    context = context_of(chosen, None)
-    images = Images(scene, chosen, context, numbers, {name: value.polynomial for name, value in motion.solved}, None)
-    _motion_exists(motion, images)
-    known = {name: x for name, x in numbers.items() if name in analysis.system.parameter_names}
-    balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
+    solved = {name: value.polynomial for name, value in motion.solved}
+    images = Images(scene, chosen, context_of(chosen, constant), numbers, solved, constant)
     parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
-    names = tuple(part.coordinates for part in parts)
-    plain = Section(tuple(axes), context, (), names, law.everywhere, law, (), numbers, numbers, images)
-    return plain, tuple(part.at(balance) for part in parts)
+    known = {name: x for name, x in numbers.items() if name in analysis.system.parameter_names}
+    return images, numbers, parts, analysis.balance.at(known), Law(analysis.balance, chosen, known)
 
 
 # --- matrices ---------------------------------------------------------------------------------------------------------

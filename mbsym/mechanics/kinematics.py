@@ -20,7 +20,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, tensor_of, zero_vector
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.mechanics.frames import Turn, back, forward, given_rotation
-from mbsym.mechanics.variables import time_derivative
+from mbsym.mechanics.variables import ring_environment, time_derivative
 from mbsym.model.system import INERTIAL, Body, Load, System
 
 
@@ -213,3 +213,8 @@ class Scene(Generic[S]):
         """A vector over the ring, in this algebra."""
         a, b, c = v
         return Vector(self.algebra, (self.carry(a), self.carry(b), self.carry(c)), v.frame)
+
+
+def over_ring(system: System, ring: Ring, bodies: bool = True, frozen: bool = False) -> Scene:
+    """The system over its ring, in coordinates."""
+    return Scene(system, ring, ring_environment(system, ring), ring, bodies=bodies, frozen=frozen)

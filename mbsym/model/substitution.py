@@ -87,7 +87,11 @@ def with_laws(system: System, laws: Mapping[str, Expression] | None = None) -> S
 
     ``laws`` go before those of the description; a function that has none stays.
     """
-    images = images_of_laws(system, laws or {})
+    return with_images(system, images_of_laws(system, laws or {}))
+
+
+def with_images(system: System, images: Mapping[str, Expression]) -> System:
+    """The same of what ``images_of_laws`` gives."""
     if not images:
         return system
     free = replace(

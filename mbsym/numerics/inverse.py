@@ -115,9 +115,7 @@ def inverse_dynamics(
     code = Code(program, ("t", *system.input_names), outputs)
     at = np.vstack([times, np.zeros((k, len(times)))])
     evaluated = kernel(code)(at)
-    if not np.isfinite(evaluated).all():
-        first = times[~np.isfinite(evaluated).all(axis=0)][0]
-        raise ValueError(f"at t = {first:.9g} the motion, or what it needs, is infinite or no number")
+    _demand_finite(evaluated, times, "the motion, or what it needs,")
     finer = np.asarray(kernel(code, "extended")(at), dtype=float)
     noise = np.abs(finer - evaluated)[3 * n : 4 * n].max(axis=1)
     moved, right = finer[: 3 * n], finer[3 * n : 4 * n]
@@ -141,24 +139,26 @@ def _program(
 ) -> tuple[Program, list[Node], list[Node], list[Node]]:
     """A program of t and the inputs: (q, q', q''), M q'' - f, and -f alone."""
     program = bound(given)
-    rates = {item.name: item.rate for item in system.prescribed}
-    names = [*system.parameter_names, *rates, "t", "pi"]
-    lower = Lowering(program, {name: program.input(name) for name in names})
-    chains = [[motion[name]] for name in system.coordinates]
-    for chain in chains:
-        for _ in range(2):
-            chain.append(rate_of(chain[-1], rates))
-    lowered = [[lower(x) for x in chain] for chain in chains]
+    names = [*system.parameter_names, *(item.name for item in system.prescribed), "t", "pi"]
+    lowered = [_with_rates(system, program, motion[name]) for name in system.coordinates]
     for name, (place, speed, acceleration) in zip(system.coordinates, lowered, strict=True):
         program.bound[name] = place
         program.bound[velocity_name(name)] = speed
         program.bound[acceleration_name(name)] = acceleration
-    everything = [*names, *system.coordinates, *system.velocities, *system.input_names]
-    everything += [acceleration_name(name) for name in system.coordinates]
-    environment = {name: program.input(name) for name in everything}
+    moving = [*system.coordinates, *system.velocities, *map(acceleration_name, system.coordinates)]
+    environment = {name: program.input(name) for name in (*names, *moving, *system.input_names)}
     states = [chain[order] for order in range(3) for chain in lowered]
     needed, applied = _with_forces(system, program, environment, ring_of(system))
     return program, states, needed, applied
+
+
+def _with_rates(system: System, program: Program, place: Expression) -> tuple[Node, Node, Node]:
+    """A given motion q(t), q' and q'' as nodes."""
+    rates = {item.name: item.rate for item in system.prescribed}
+    names = (*system.parameter_names, *rates, "t", "pi")
+    lower = Lowering(program, {name: program.input(name) for name in names})
+    speed = rate_of(place, rates)
+    return lower(place), lower(speed), lower(rate_of(speed, rates))
 
 
 def _with_forces(
@@ -169,6 +169,13 @@ def _with_forces(
     both = [residuals(Scene(system, program, x, ring)) for x in (environment, {**environment, **resting})]
     needed, applied = ([nodes[name] for name in system.coordinates] for nodes in both)
     return needed, applied
+
+
+def _demand_finite(values: Array, times: Array, what: str) -> None:
+    """Raises ValueError with the first time at which a row holds no number."""
+    finite = np.isfinite(values).all(axis=0)
+    if not finite.all():
+        raise ValueError(f"at t = {times[~finite][0]:.9g} {what} is infinite or no number")
 
 
 def rate_of(expression: Expression, rates: Mapping[str, Expression]) -> Expression:
@@ -231,7 +238,7 @@ def inverse_constrained(
     residual, left, size = np.zeros((n, m)), 0.0, 0.0
     for place in range(m):
         lower = _root(masses[:, :, place])
-        vectors = (needed, applied, columns, _transposed(partials))
+        vectors = (needed, applied, columns, np.swapaxes(partials, 0, 1))
         right, forces, own, ties = (np.linalg.solve(lower, x[..., place]) for x in vectors)
         free = _beside(ties)
         scales = np.linalg.norm(own, axis=0)
@@ -247,10 +254,6 @@ def inverse_constrained(
         system, system.input_names, times, values, states[:n], states[n : 2 * n], states[2 * n :],
         residual, remaining, rank,
     )  # fmt: skip
-
-
-def _transposed(partials: Any) -> Any:
-    return np.swapaxes(partials, 0, 1)
 
 
 def _root(masses: Any) -> Any:
@@ -282,23 +285,16 @@ class _Given:
 
     def __init__(self, system: System, given: Scenario, motion: Mapping[str, Expression]) -> None:
         program = bound(given)
-        rates = {item.name: item.rate for item in system.prescribed}
-        names = [*system.parameter_names, *rates, "t", "pi"]
-        lower = Lowering(program, {name: program.input(name) for name in names})
-        self._kernels = {}
-        for name, place in motion.items():
-            speed = rate_of(place, rates)
-            nodes = tuple(lower(x) for x in (place, speed, rate_of(speed, rates)))
-            self._kernels[name] = kernel(Code(program, ("t",), nodes))
+        self._kernels = {
+            name: kernel(Code(program, ("t",), _with_rates(system, program, place))) for name, place in motion.items()
+        }
 
     def __call__(self, times: Array) -> dict[str, Any]:
         """By name, shape (3, m).  Raises ValueError."""
         motions = {}
         for name, own in self._kernels.items():
             values = np.broadcast_to(own(np.array([times])), (3, len(times)))
-            if not np.isfinite(values).all():
-                first = times[~np.isfinite(values).all(axis=0)][0]
-                raise ValueError(f"at t = {first:.9g} the motion of {name} is infinite or no number")
+            _demand_finite(values, times, f"the motion of {name}")
             motions[name] = values
         return motions
 
@@ -426,7 +422,7 @@ def _equations(system: System, given: Scenario, states: Any, times: Array) -> tu
     """(M q'' - f at u = 0 (n, m), -f (n, m), B (n, k, m), M (n, n, m))."""
     program: Program = bound(given)
     n, k = len(system.coordinates), len(system.input_names)
-    moving = [*system.coordinates, *system.velocities, *(acceleration_name(name) for name in system.coordinates)]
+    moving = [*system.coordinates, *system.velocities, *map(acceleration_name, system.coordinates)]
     names = [*system.parameter_names, *(item.name for item in system.prescribed), "t", "pi", *moving]
     environment = {name: program.input(name) for name in (*names, *system.input_names)}
     ring = ring_of(system)
@@ -438,8 +434,6 @@ def _equations(system: System, given: Scenario, states: Any, times: Array) -> tu
     outputs = (*needed, *applied, *(x for row in slopes for x in row), *masses)
     code = Code(program, ("t", *moving, *system.input_names), outputs)
     values = np.asarray(kernel(code)(np.vstack([times, states, np.zeros((k, len(times)))])), dtype=float)
-    if not np.isfinite(values).all():
-        first = times[~np.isfinite(values).all(axis=0)][0]
-        raise ValueError(f"at t = {first:.9g} what the motion needs is infinite or no number")
+    _demand_finite(values, times, "what the motion needs")
     columns = -values[2 * n : 2 * n + n * k].reshape(n, k, len(times))
     return values[:n], values[n : 2 * n], columns, values[2 * n + n * k :].reshape(n, n, len(times))

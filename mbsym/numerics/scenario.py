@@ -7,7 +7,7 @@ may be left out: a coordinate whose initial position is given and whose velocity
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -25,7 +25,7 @@ from mbsym.expressions.tree import text as spelled
 from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.model.assumptions import broken, has_sign
 from mbsym.model.inputs import Input
-from mbsym.model.substitution import driven, folded, images_of_laws, lacking_law, speeds_in_coordinates, with_laws
+from mbsym.model.substitution import driven, folded, images_of_laws, lacking_law, speeds_in_coordinates, with_images
 from mbsym.model.system import InitialValue, System, overruled, velocity_name
 
 #: Irrational values are rounded to so many bits.
@@ -131,7 +131,7 @@ def scenario(
     given_laws = {name: folded(law, images) for name, law in (laws or {}).items()}
     given_laws |= {item.name: images[item.name] for item in system.given if item.name in images}
     functions = tuple(Input(item.name, item.meaning, images.get(item.name, ZERO)) for item in system.given)
-    system = with_laws(system, given_laws)
+    system = with_images(system, images)
     inputs = (*system.inputs, *functions)
     system = driven(system, given_laws)
     numbers = _Numbers()
@@ -393,16 +393,6 @@ def _within_range(value: Fraction) -> Fraction:
     if size > LARGEST_EXPONENT:
         raise SingularPoint("it is beyond the range of double precision")
     return value
-
-
-def describe(scenario_: Scenario) -> Iterable[tuple[str, float]]:
-    """(name, value) of every number, for tables."""
-    yield from ((name, float(value)) for name, value in scenario_.parameters.items())
-    for names_, values in (
-        (scenario_.system.coordinates, scenario_.positions),
-        (scenario_.system.velocities, scenario_.velocities),
-    ):
-        yield from zip(names_, (float(value) for value in values), strict=True)
 
 
 # Programs with numbers put in: what depends on parameters only is computed once, with ``PRECISION`` bits.

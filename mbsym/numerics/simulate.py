@@ -42,35 +42,54 @@ if TYPE_CHECKING:
 CHUNK, MOST_AT_ONCE = 0.2, 1 << 16
 
 
-@dataclass(frozen=True)
-class Trajectory:
-    """States at ``times`` (m of them): ``states`` has shape (2n, m), rows in the order (q, q').
+@dataclass(frozen=True, kw_only=True)
+class Ending:
+    """What a run cost, and why it ended before the last time asked for, if it did.
+
+    ``interrupted``: the user stopped it.  ``passed`` is what is not smooth, or narrow, on the way; None where there is
+    no such thing.
+    """
+
+    work: Work
+    seconds: float
+    breakdown: Breakdown | None = None
+    interrupted: bool = False
+    passed: Passed | None = None
+
+    @property
+    def whole(self) -> bool:
+        """Whether the last time asked for is reached."""
+        return self.breakdown is None and not self.interrupted
+
+
+@dataclass(frozen=True, kw_only=True)
+class Integrated(Ending):
+    """``states`` (2n, m) at ``times`` (m of them), rows in the order (q, q')."""
+
+    times: Any
+    states: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trajectory(Integrated):
+    """The states of a run with their energies.
 
     ``energy`` is T - U, ``generalized_energy`` h = T2 - T0 - U (one and the same where nothing is prescribed),
     ``change`` h(t) - h(0) in all its digits, and ``kinetic`` the kinetic energy that it is measured by, each of shape
-    (m,).  ``breakdown`` says why the trajectory ends before the last time asked for; ``interrupted`` that the user
-    stopped it.  ``between`` is the largest kinetic energy between samples that are few: a motion sampled at whole
-    periods seems to rest.  ``passed`` is what is not smooth, or narrow, on the way; None where there is no such thing.
-    ``least_pivot`` is how far a pivot of M fell, and when (see there); None where nobody has looked.  ``rounding``: a
-    kinetic energy that is nothing else (``kinetic_rounding``).
+    (m,).  ``between`` is the largest kinetic energy between samples that are few: a motion sampled at whole periods
+    seems to rest.  ``least_pivot`` is how far a pivot of M fell, and when (see there); None where nobody has looked.
+    ``rounding``: a kinetic energy that is nothing else (``kinetic_rounding``).
     ``table`` has all rows, where these are some of very many; ``between`` is the largest kinetic energy of all then.
     """
 
     system: System
     method: str
     setting: Setting
-    times: Any
-    states: Any
     energy: Any
     generalized_energy: Any
     change: Any
     kinetic: Any
-    work: Work
-    seconds: float
-    breakdown: Breakdown | None = None
-    interrupted: bool = False
     between: float = 0.0
-    passed: Passed | None = None
     least_pivot: tuple[float, float] | None = None
     rounding: float = 0.0
     table: Table | None = None
@@ -96,29 +115,6 @@ class Trajectory:
     def drift(self) -> Any:
         """(h - h(0)) / ``energy_scale``."""
         return self.change / self.energy_scale
-
-    @property
-    def whole(self) -> bool:
-        """Whether it reaches the last time asked for."""
-        return self.breakdown is None and not self.interrupted
-
-
-@dataclass(frozen=True)
-class Integrated:
-    """States (2n, m) at ``times``, what they cost, and why they end early, if they do."""
-
-    times: Any
-    states: Any
-    work: Work
-    seconds: float
-    breakdown: Breakdown | None
-    interrupted: bool
-    passed: Passed | None = None
-
-    @property
-    def whole(self) -> bool:
-        """Whether they reach the last time asked for."""
-        return self.breakdown is None and not self.interrupted
 
 
 def simulate(
@@ -171,7 +167,7 @@ def integrated(
     states = np.ascontiguousarray(rows.states[:, : rows.count])
     recorded = rows.times[: rows.count].copy()
     passed = up_to(ending.passed, float(recorded[-1]))
-    return Integrated(recorded, states, ending.work, ending.seconds, ending.breakdown, ending.interrupted, passed)
+    return Integrated(times=recorded, states=states, **(vars(ending) | {"passed": passed}))
 
 
 class Recorder(Protocol):
@@ -203,17 +199,6 @@ class _InMemory:
 
     def past(self) -> Any:
         return np.vstack([self.times[: self.count], self.states[:, : self.count].astype(float)])
-
-
-@dataclass(frozen=True)
-class Ending:
-    """What a run cost, and why it ended early, if it did."""
-
-    work: Work
-    seconds: float
-    breakdown: Breakdown | None
-    interrupted: bool
-    passed: Passed | None
 
 
 def followed(
@@ -263,7 +248,7 @@ def followed(
     except KeyboardInterrupt:
         interrupted = True
     seconds = max(0.0, time.perf_counter() - started - work.compiling)
-    return Ending(replace(work), seconds, breakdown, interrupted, met_by(run))
+    return Ending(work=replace(work), seconds=seconds, breakdown=breakdown, interrupted=interrupted, passed=met_by(run))
 
 
 def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: Any) -> Breakdown:

@@ -78,13 +78,9 @@ def streamed(
         generalized_energy=quantities["energy"] if natural else quantities["generalized_energy"],
         change=quantities["change"],
         kinetic=shown[size + 1],
-        work=ending.work,
-        seconds=ending.seconds,
-        breakdown=ending.breakdown,
-        interrupted=ending.interrupted,
-        passed=up_to(ending.passed, float(shown[0, -1])),
         between=rows.kinetic,
         table=table,
+        **(vars(ending) | {"passed": up_to(ending.passed, float(shown[0, -1]))}),
     )
 
 

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil, cos, dist, hypot, isfinite, pi, sin
 from typing import Any
 
@@ -416,11 +416,9 @@ class _Paper:
         for name, (body, hinge) in self._sliding.items():
             along = self.flat(self.point(hinge.along))
             size = hypot(*along)
-            if size < 1e-6 or any(
-                coordinate.name == name and coordinate.kind is Measure.ANGLE for coordinate in self.picture.coordinates
-            ):
+            if size < 1e-6 or self._is_angle(name):
                 continue
-            right = along[0] / size, along[1] / size
+            right = _unit(along)
             zero = self.on(self.point(body.origin, self.varied(name, 0.0)))
             here = self.spot(body.origin)
             sprung, damped = name in body.joint.sprung, name in body.joint.damped
@@ -444,7 +442,7 @@ class _Paper:
             self.line(body.name, (zero, here), Ink.HIDDEN)
         shift = 0.34 if sprung or damped else 0.0
         if shift and self.still:
-            ends = [(p[0] + shift * side[0], p[1] + shift * side[1]) for p in (zero, here)]
+            ends = [_moved(place, side, shift) for place in (zero, here)]
             self.line(f"length: {name}", ends, Ink.THIN, arrow=True, both=True)
             self.letter(Name(name), _between(*ends), side)
         else:
@@ -457,10 +455,7 @@ class _Paper:
             right, up = (-right[0], -right[1]), (-up[0], -up[1])
         wide, tall, wheel = 0.55, 0.26, 0.12
         level = abs(right[1]) < 1e-6 and any(isinstance(x, UniformGravity) for x in self.system.loads)
-
-        def there(a: float, b: float) -> Place:
-            return here[0] + a * right[0] + b * up[0], here[1] + a * right[1] + b * up[1]
-
+        there = partial(_moved, here, right)
         floor = -tall - (2 * wheel if level else 0.0)
         towards = (zero[0] - here[0]) * right[0] + (zero[1] - here[1]) * right[1]
         left, end = min(-1.6, towards - 0.5), max(1.2, towards + 0.4)
@@ -629,8 +624,11 @@ class _Paper:
         return not body.massive and any(
             drawn.parent == body.name and name in drawn.joint.hinges[-1].coordinates
             for name, (drawn, _) in self._sliding.items()
-            if any(x.name == name and x.kind is Measure.ANGLE for x in self.picture.coordinates)
+            if self._is_angle(name)
         )
+
+    def _is_angle(self, name: str) -> bool:
+        return any(x.name == name and x.kind is Measure.ANGLE for x in self.picture.coordinates)
 
     def _mass(self, body: Drawn, place: Place, away: Place, near: float) -> None:
         mass = self.own[body.name].mass
@@ -660,20 +658,15 @@ class _Paper:
         count = max(3, ceil(length / 0.2))
         for k in range(count):
             s = length * (k + 0.75) / count
-            foot = first[0] + s * along[0], first[1] + s * along[1]
-            tip = foot[0] + 0.11 * (away[0] - along[0]), foot[1] + 0.11 * (away[1] - along[1])
+            foot = _moved(first, along, s)
+            tip = _moved(_moved(foot, away, 0.11), along, -0.11)
             self.marks.append(Stroke(f"{of} hatched", (foot, tip), Ink.THIN))
         middle = _between(first, second)
         self.letters.avoid([first, second], False)
-        self.letters.avoid([(middle[0] + 0.1 * away[0], middle[1] + 0.1 * away[1])], False)
+        self.letters.avoid([_moved(middle, away, 0.1)], False)
 
     def _dashpot(self, of: str, first: Place, second: Place) -> None:
-        along, length = _direction(first, second), dist(first, second)
-        side = _turned(along)
-
-        def there(a: float, b: float) -> Place:
-            return first[0] + a * along[0] + b * side[0], first[1] + a * along[1] + b * side[1]
-
+        length, there = dist(first, second), partial(_moved, first, _direction(first, second))
         a, b, h = 0.4 * length, 0.62 * length, min(0.11, 0.2 * length)
         self.line(of, (first, there(a, 0.0)), Ink.SOLID)
         self.line(of, (there(b, h), there(a, h), there(a, -h), there(b, -h)), Ink.SOLID)
@@ -754,8 +747,8 @@ class _Paper:
         name, value = guide.coordinate, self.state[guide.coordinate]
         middle_of = combined([1 / (len(curve) - 1)] * (len(curve) - 1), curve[:-1])
         radii = [dist(x, middle_of) for x in curve]
-        angle = any(x.name == name and x.kind is Measure.ANGLE for x in self.picture.coordinates)
-        if not angle or max(radii) - min(radii) > 1e-6 * max(radii) or abs(value) < 0.05 or abs(value) > 2 * pi:
+        is_round = max(radii) - min(radii) <= 1e-6 * max(radii)
+        if not is_round or not self._is_angle(name) or not 0.05 <= abs(value) <= 2 * pi:
             return
         body = self.bodies[guide.body]
         centre, bead = self.on(middle_of), self.spot(body.origin)
@@ -776,8 +769,7 @@ class _Paper:
             if abs(values[parameter] - radius) < 1e-9 * radius:
                 side = _turned(_direction(centre, bead))
                 sign = -1.0 if dot(side, (middle[0] - centre[0], middle[1] - centre[1])) > 0 else 1.0
-                place = centre[0] + 0.6 * (bead[0] - centre[0]), centre[1] + 0.6 * (bead[1] - centre[1])
-                self.letter(Name(parameter), place, (sign * side[0], sign * side[1]))
+                self.letter(Name(parameter), _beyond(centre, bead, 0.6), (sign * side[0], sign * side[1]))
                 break
 
     def _spiral(self, body: Drawn, name: str) -> None:
@@ -809,20 +801,15 @@ class _Paper:
                 tip = self.spot(body.origin)
             else:
                 continue
-            size = hypot(*along)
-            x, y = along[0] / size, along[1] / size
-            if self._covered(tip, (x, y)):  # along a rod: towards the point, from outside
-                ends = (tip[0] - 1.1 * x, tip[1] - 1.1 * y), (tip[0] - 0.14 * x, tip[1] - 0.14 * y)
-            else:
-                reach = 0.55 if body.cart else 0.12
-                ends = (
-                    (tip[0] + reach * x, tip[1] + reach * y),
-                    (tip[0] + (reach + 0.9) * x, tip[1] + (reach + 0.9) * y),
-                )
+            way = _unit(along)
+            reach = 0.55 if body.cart else 0.12
+            # Along a rod: towards the point, from outside.
+            first, second = (-1.1, -0.14) if self._covered(tip, way) else (reach, reach + 0.9)
+            ends = _moved(tip, way, first), _moved(tip, way, second)
             self.line(f"force {number + 1}", ends, Ink.SOLID, arrow=True)
             what = _length_of(load.components)
             if what is not None:
-                self.letter(what, _between(*ends), _turned((x, y)))
+                self.letter(what, _between(*ends), _turned(way))
 
     def _covered(self, tip: Place, along: Place) -> bool:
         """Whether a rod runs from the point in this direction."""
@@ -867,11 +854,11 @@ class _Paper:
                 size = hypot(*along)
                 if size < 0.15:
                     continue
-                out = along[0] / size, along[1] / size
+                out = _unit(along)
                 far = [dot((x - here[0], y - here[1]), out) for stroke in solid for x, y in stroke.points]
                 far = [] if self._target(body) is not None and dist(here, self.spot(body.centre)) > 0.5 else far
                 reach = max([0.9 * size + 0.2, *(0.8 * x + 0.3 for x in far)])
-                tip = here[0] + reach * along[0] / size, here[1] + reach * along[1] / size
+                tip = _moved(here, out, reach)
                 self.line(f"axis {k} of {body.name}", (here, tip), Ink.THIN, arrow=True)
                 self.letter(k, tip, along)
 
@@ -886,18 +873,16 @@ class _Paper:
             name = sorted({x for angle in self.own[body.name].rotation.angles for x in names(angle)} & driven)
             if len(name) != 1 or abs(hypot(*along) - 1) > 1e-6:
                 continue
-            up, side = along, (along[1], -along[0])
             here = self.spot(body.origin)
-            reach = [dot((x - here[0], y - here[1]), up) for x, y in self.letters.lines]
-            top, foot = ((here[0] + a * up[0], here[1] + a * up[1]) for a in (max(reach) + 0.75, min(reach) - 0.25))
+            reach = [dot((x - here[0], y - here[1]), along) for x, y in self.letters.lines]
+            top, foot = (_moved(here, along, a) for a in (max(reach) + 0.75, min(reach) - 0.25))
             self.line(f"axis of {body.name}", (foot, top), Ink.HIDDEN)
-            middle = top[0] - 0.25 * up[0], top[1] - 0.25 * up[1]
+            middle = _moved(top, along, -0.25)
             # Counter-clockwise seen from the top: in front it goes to the right.
             turn = [pi * (5 / 6 + 4 / 3 * k / (ARC - 1)) for k in range(ARC)]
-            ring = [(0.3 * cos(a), 0.1 * sin(a)) for a in turn]
-            points = [(middle[0] + x * side[0] + y * up[0], middle[1] + x * side[1] + y * up[1]) for x, y in ring]
+            points = [_moved(middle, along, 0.1 * sin(a), -0.3 * cos(a)) for a in turn]
             self.line(f"turn: {name[0]}", points, Ink.THIN, arrow=True, smooth=True)
-            self.letter(Name(name[0]), points[-1], side)
+            self.letter(Name(name[0]), points[-1], (along[1], -along[0]))
 
     def _corner(self) -> None:
         """The directions of the axes of the frame, and of gravity, aside."""
@@ -914,19 +899,17 @@ class _Paper:
         right = max(0.0, max(x for _, (x, _) in arrows))
         corner = low[0] - 0.75 - reach * right, low[1] + 0.1 - reach * downwards
         for k, along in arrows:
-            tip = corner[0] + reach * along[0], corner[1] + reach * along[1]
+            tip = _moved(corner, along, reach)
             self.line(f"axis {k}", (corner, tip), Ink.THIN, arrow=True)
             self.letter(k, tip, along, 0.14)
         gravity = next((x for x in self.system.loads if isinstance(x, UniformGravity)), None)
         if gravity is None:
             return
         up = self.flat(self.picture.view.up)
-        size = hypot(*up)
-        if size < 0.3:
+        if hypot(*up) < 0.3:
             return
-        x, y = -up[0] / size, -up[1] / size
         head = corner[0] + reach * left / 2, max(corner[1] + 2.0, low[1] + 2.0)
-        tip = head[0] + 0.7 * x, head[1] + 0.7 * y
+        tip = _moved(head, _unit(up), -0.7)
         self.line("gravity", (head, tip), Ink.SOLID, arrow=True)
         what = _length_of(gravity.acceleration)
         if what is not None:
@@ -990,6 +973,15 @@ def _direction(first: Place, second: Place) -> Place:
     return ((second[0] - first[0]) / size, (second[1] - first[1]) / size) if size else (1.0, 0.0)
 
 
+def _unit(direction: Place) -> Place:
+    return _direction((0.0, 0.0), direction)
+
+
+def _moved(place: Place, along: Place, ahead: float, aside: float = 0.0) -> Place:
+    """So far along a direction, and so far to its left."""
+    return place[0] + ahead * along[0] - aside * along[1], place[1] + ahead * along[1] + aside * along[0]
+
+
 def _turned(direction: Place) -> Place:
     """To the left."""
     return -direction[1], direction[0]
@@ -1006,12 +998,11 @@ def _beyond(first: Place, second: Place, times: float) -> Place:
 def _coil(first: Place, second: Place) -> list[Place]:
     """The zigzag of a spring."""
     along, length = _direction(first, second), dist(first, second)
-    side = _turned(along)
     straight = min(0.2, 0.15 * length)
     turns = max(3, min(9, round((length - 2 * straight) / 0.22)))
     points = [first]
     for k in range(2 * turns + 1):
         a = straight + (length - 2 * straight) * k / (2 * turns)
         b = 0.0 if k in (0, 2 * turns) else (0.13 if k % 2 else -0.13)
-        points.append((first[0] + a * along[0] + b * side[0], first[1] + a * along[1] + b * side[1]))
+        points.append(_moved(first, along, a, b))
     return [*points, second]

@@ -214,10 +214,7 @@ class Balance:
                 fields += self._turned(body)
             if not fields:
                 return []
-            forces = [
-                ring.reduce(ring.derivative(self.energy.force_function.polynomial, name) + self._forces[name])
-                for name in names
-            ]
+            forces = self._whole_forces(self.energy, self._forces, names)
             standing = [name for name in names if name not in moving]
             with ring.budget(FIELD_WORK):
                 return symmetries(
@@ -232,6 +229,13 @@ class Balance:
                 )
         except Failure:
             return []
+
+    def _whole_forces(
+        self, energy: Energy, applied: Mapping[str, Polynomial], names: Sequence[str]
+    ) -> list[Polynomial]:
+        """dU/dq_i and what is applied besides."""
+        ring, u = self.scene.ring, energy.force_function.polynomial
+        return [ring.reduce(ring.derivative(u, name) + applied[name]) for name in names]
 
     def _turned(self, body: Body) -> list[Direction]:
         """Turns of a body about axes of the frame that it hangs on, and about its own, by three angles."""
@@ -256,10 +260,7 @@ class Balance:
             return none
         order = (*coordinates, *(name for name in system.coordinates if name not in coordinates))
         try:
-            forces = [
-                ring.reduce(ring.derivative(self.energy.force_function.polynomial, name) + self._forces[name])
-                for name in order
-            ]
+            forces = self._whole_forces(self.energy, self._forces, order)
             moving = (*system.coordinates, *system.velocities)
             return displacements(ring, coordinates, self.energy.kinetic_energy.polynomial, forces, moving, rows)
         except Failure:

@@ -35,10 +35,9 @@ from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, Shown, column
 from mbsym.mechanics.constraints.expansion import reached
 from mbsym.mechanics.frames import of_turns, rates
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.motion import motion_values, turning, unperturbed_with, unsteady
 from mbsym.mechanics.speeds import SpeedForm, Variable
-from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import velocity_name
 from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.equilibrium import Equilibrium, unsolved
@@ -237,7 +236,7 @@ def _positions(
 def _motion(form: SpeedForm, at: Equilibrium, reduced: Reduced | None) -> tuple[Scene, dict[int, Polynomial]]:
     """A scene of the coordinates, and the motion in them with the velocities that constraints demand."""
     system, ring = form.system.without_speeds, form.ring
-    plain = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
+    plain = over_ring(system, ring, bodies=False)
     images = at.determined(plain)
     motion = dict(unperturbed_with(plain, images))
     if reduced is None:

@@ -107,29 +107,85 @@ class Writer:
     def _power(self) -> str:
         return "^" if self.readable else "**"
 
-    @singledispatchmethod
     def inline(self, value: Any) -> str:
         """What stands in a line."""
+        match value:
+            case Said() | Message():
+                return self.said(value)
+            case str():
+                return self.language.say(value) if isinstance(value, StrEnum) else value
+            case int():
+                return str(value)
+            case Formula():
+                return self._formula(value)
+            case content.Readable():
+                return self._formula(value.value, "results.json" if value.kept and self.file else self.file)
+            case content.Text():
+                return "".join(map(self.inline, value.parts))
+            case content.Phrase():
+                return "".join(text for text, _ in self.pieces(value))
+            case content.Numbered():
+                return ""
+            case content.Elsewhere():
+                if not self.description:
+                    return self.inline(value.link)
+                return f"mbsym show {quote(self.description)} {value.name}".replace(" ", UNBROKEN)
+            case content.Strong() | content.Graded() | content.Link():
+                return self.inline(value.text)
+            case content.Emphasis() | content.Verbatim() | content.Citation():
+                return value.text
+            case content.Unit():
+                return f"[{value.text}]"
+            case content.Name():
+                name = value.name if value.ring is None or not self.readable else readable_name(value.ring, value.name)
+                return name + _DOTS[value.dots] + (f"({value.at})" if value.at else "")
+            case content.Symbol():
+                letter = value.letter if value.look != "script" else _SCRIPT[value.letter]
+                between = "" if len(value.letter) == 1 and value.lower[:1].isdigit() else "_"
+                below = between + value.lower if value.lower else ""
+                above = f"^{value.upper}" if value.upper else ""
+                return letter + ("bar" if value.look == "bar" else "") + below + above + _DOTS[value.dots]
+            case content.Entry():
+                index = value.index if isinstance(value.index, str) else self.inline(value.index)
+                return f"{self.inline(value.whole)}[{index}]"
+            case content.Notation():
+                return plain_notation(value.tex, self._power).strip()
+            case content.Power():
+                return f"{self.inline(value.base)}{self._power}{value.exponent}"
+            case content.Listed():
+                written = ", ".join(map(self.inline, value.items))
+                return f"({written})" if value.brackets else f"{{{written}}}" if value.braces else written
+            case content.Relation():
+                return self._relation(value)
+            case content.Number():
+                return value.text
+            case content.Rows():
+                return f"[{', '.join(self.inline(content.Listed(row, brackets=True)) for row in value.rows)}]"
+            case content.Raised():
+                return f"{self.inline(value.of)}({value.index})"
+            case content.Polynomial():
+                signs = (self._power, UNBROKEN if self.readable else "*")
+                written = in_powers(list(map(self.inline, value.coefficients)), value.variable, *signs)
+                return written if value.power == 1 else f"({written}){self._power}{value.power}"
         if not self.readable:
             return text(value)
         primed = re.sub(r"_(d{1,2})ot\b", lambda m: "'" * len(m[1]), text(_divided_last(value)))
         return primed.replace("**", "^").replace("*", UNBROKEN)
 
-    @inline.register
-    def _(self, value: str) -> str:
-        return self.language.say(value) if isinstance(value, StrEnum) else value
-
-    @inline.register
-    def _(self, value: int) -> str:
-        return str(value)
-
-    @inline.register
-    def _(self, value: Formula) -> str:
-        return self._formula(value)
-
-    @inline.register
-    def _(self, value: content.Readable) -> str:
-        return self._formula(value.value, "results.json" if value.kept and self.file else self.file)
+    def _relation(self, value: content.Relation) -> str:
+        written, before = "", None
+        for x in value.parts:
+            piece = self.inline(x).strip()
+            listed = isinstance(x, content.Listed) and x.brackets and not isinstance(x.items[0], Formula)
+            called = listed and isinstance(before, content.Symbol)  # with formulas it would be a product
+            factor = isinstance(before, content.Symbol) and not isinstance(x, str)
+            close = self.readable and (factor or isinstance(before, str) or (x == "=" and len(written) <= _SHORT))
+            behind = UNBROKEN if close else " "
+            written += (
+                "" if not written or called or piece[:1] in ":," or re.search("(^|=.)-$", written) else behind
+            ) + piece
+            before = x
+        return written
 
     def _formula(self, value: Formula, file: str | None = None) -> str:
         if value.terms <= self.longest:
@@ -140,108 +196,6 @@ class Writer:
 
     def _counted(self, size: Said, file: str) -> str:
         return f"[{self.said(size)}{f': {file}' if file else ''}]"
-
-    @inline.register(Said)
-    @inline.register(Message)
-    def _(self, value: Said) -> str:
-        return self.said(value)
-
-    @inline.register
-    def _(self, value: content.Text) -> str:
-        return "".join(map(self.inline, value.parts))
-
-    @inline.register
-    def _(self, value: content.Phrase) -> str:
-        return "".join(text for text, _ in self.pieces(value))
-
-    @inline.register
-    def _(self, value: content.Numbered) -> str:
-        return ""
-
-    @inline.register
-    def _(self, value: content.Elsewhere) -> str:
-        if not self.description:
-            return self.inline(value.link)
-        return f"mbsym show {quote(self.description)} {value.name}".replace(" ", UNBROKEN)
-
-    @inline.register(content.Strong)
-    @inline.register(content.Graded)
-    @inline.register(content.Link)
-    def _(self, value: content.Strong | content.Graded | content.Link) -> str:
-        return self.inline(value.text)
-
-    @inline.register(content.Emphasis)
-    @inline.register(content.Verbatim)
-    @inline.register(content.Citation)
-    def _(self, value: content.Emphasis | content.Verbatim | content.Citation) -> str:
-        return value.text
-
-    @inline.register
-    def _(self, value: content.Unit) -> str:
-        return f"[{value.text}]"
-
-    @inline.register
-    def _(self, value: content.Name) -> str:
-        name = value.name if value.ring is None or not self.readable else readable_name(value.ring, value.name)
-        return name + _DOTS[value.dots] + (f"({value.at})" if value.at else "")
-
-    @inline.register
-    def _(self, value: content.Symbol) -> str:
-        letter = value.letter if value.look != "script" else _SCRIPT[value.letter]
-        between = "" if len(value.letter) == 1 and value.lower[:1].isdigit() else "_"
-        below = between + value.lower if value.lower else ""
-        above = f"^{value.upper}" if value.upper else ""
-        return letter + ("bar" if value.look == "bar" else "") + below + above + _DOTS[value.dots]
-
-    @inline.register
-    def _(self, value: content.Entry) -> str:
-        index = value.index if isinstance(value.index, str) else self.inline(value.index)
-        return f"{self.inline(value.whole)}[{index}]"
-
-    @inline.register
-    def _(self, value: content.Notation) -> str:
-        return plain_notation(value.tex, self._power).strip()
-
-    @inline.register
-    def _(self, value: content.Power) -> str:
-        return f"{self.inline(value.base)}{self._power}{value.exponent}"
-
-    @inline.register
-    def _(self, value: content.Listed) -> str:
-        written = ", ".join(map(self.inline, value.items))
-        return f"({written})" if value.brackets else f"{{{written}}}" if value.braces else written
-
-    @inline.register
-    def _(self, value: content.Relation) -> str:
-        text, before = "", None
-        for x in value.parts:
-            piece = self.inline(x).strip()
-            listed = isinstance(x, content.Listed) and x.brackets and not isinstance(x.items[0], Formula)
-            called = listed and isinstance(before, content.Symbol)  # with formulas it would be a product
-            factor = isinstance(before, content.Symbol) and not isinstance(x, str)
-            close = self.readable and (factor or isinstance(before, str) or (x == "=" and len(text) <= _SHORT))
-            behind = UNBROKEN if close else " "
-            text += ("" if not text or called or piece[:1] in ":," or re.search("(^|=.)-$", text) else behind) + piece
-            before = x
-        return text
-
-    @inline.register
-    def _(self, value: content.Number) -> str:
-        return value.text
-
-    @inline.register
-    def _(self, value: content.Rows) -> str:
-        return f"[{', '.join(self.inline(content.Listed(row, brackets=True)) for row in value.rows)}]"
-
-    @inline.register
-    def _(self, value: content.Raised) -> str:
-        return f"{self.inline(value.of)}({value.index})"
-
-    @inline.register
-    def _(self, value: content.Polynomial) -> str:
-        signs = (self._power, UNBROKEN if self.readable else "*")
-        written = in_powers(list(map(self.inline, value.coefficients)), value.variable, *signs)
-        return written if value.power == 1 else f"({written}){self._power}{value.power}"
 
     # --- blocks ---
 

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from mbsym.expressions.message import worded
-from mbsym.formulas.latex import latex_names, latex_symbol
+from mbsym.formulas.latex import LatexNames, latex_symbol
 from mbsym.model.system import INERTIAL
 from mbsym.report.canonical import Denominators, forms_of, with_names
 from mbsym.report.compact import Compact, compact, told_formulas
@@ -88,7 +88,7 @@ class Results:
 
     def _free(self, *letters: str) -> str:
         """The first that is the symbol of nothing declared."""
-        system, names = self.system, latex_names(self.analysis.ring)
+        system, names = self.system, LatexNames.of(self.analysis.ring)
         declared = [*system.coordinates, *system.parameter_names]
         declared += [*(x.name for x in system.prescribed), *(x.name for x in system.notation)]
         taken = {str(names[name]) for name in declared}

@@ -114,14 +114,15 @@ class Allowed:
     """
 
     what: str
-    kinds: tuple[str, ...] = ("parameter",)
+    named: tuple[str, ...] = ("parameter",)
     kinked: tuple[str, ...] = ()
     given: bool = True
 
-    def __post_init__(self) -> None:
-        for kind, other in _IN_TIME if self.given else ():
-            if kind in self.kinds and other not in self.kinds:
-                object.__setattr__(self, "kinds", (*self.kinds, other))
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds that are ``named``, and those of functions of time."""
+        in_time = (other for kind, other in _IN_TIME if self.given and kind in self.named)
+        return tuple(dict.fromkeys((*self.named, *in_time)))
 
 
 NUMBER = Allowed("a numerical value", (), KINKED)

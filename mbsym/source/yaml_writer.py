@@ -7,7 +7,7 @@ out, so that a written file is as short as a hand-written one.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from typing import Any, Union
 
@@ -29,9 +29,9 @@ from mbsym.model.system import (
     Parameter,
     Point,
     Prescribed,
+    Rotation,
     SmallParameter,
     System,
-    Vector,
 )
 from mbsym.model.system import Shape as Look
 from mbsym.source.grammar import Ends, Equation, Formula, Key, Kind, Named, Record, Same, Type
@@ -83,35 +83,26 @@ def system_shape(system: System) -> dict[str, Shape]:
     return {key: value for key, value in shape.items() if value or key == "name"}
 
 
-def vector_shape(vector: Vector) -> list[Shape]:
+def vector_shape(vector: Sequence[Expression]) -> list[Shape]:
     return [text(component) for component in vector]
 
 
 def parameter_shape(parameter: Parameter) -> dict[str, Shape]:
-    shape: dict[str, Shape] = {"sign": parameter.sign}
-    if parameter.value is not None:
-        shape["value"] = text(parameter.value)
-    if parameter.meaning:
-        shape["meaning"] = parameter.meaning
-    return shape
+    return {"sign": parameter.sign, **_told("value", parameter.value, parameter.meaning)}
 
 
 def prescribed_shape(prescribed: Prescribed) -> dict[str, Shape]:
-    shape: dict[str, Shape] = {"rate": text(prescribed.rate)}
-    if prescribed.initial is not None:
-        shape["initial"] = text(prescribed.initial)
-    if prescribed.meaning:
-        shape["meaning"] = prescribed.meaning
-    return shape
+    return {"rate": text(prescribed.rate), **_told("initial", prescribed.initial, prescribed.meaning)}
 
 
 def given_shape(given: Given) -> dict[str, Shape]:
-    shape: dict[str, Shape] = {"of": "t"}
-    if given.law is not None:
-        shape["value"] = text(given.law)
-    if given.meaning:
-        shape["meaning"] = given.meaning
-    return shape
+    return {"of": "t", **_told("value", given.law, given.meaning)}
+
+
+def _told(key: str, value: Expression | None, meaning: str) -> dict[str, Shape]:
+    """What a name is worth, under this key, and what it means, as far as that is said."""
+    shape: dict[str, Shape] = {} if value is None else {key: text(value)}
+    return shape | ({"meaning": meaning} if meaning else {})
 
 
 def input_shape(system_input: Input) -> dict[str, Shape]:
@@ -172,8 +163,7 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
     """One body; its coordinates are left out where the reader infers exactly them."""
     shape: dict[str, Shape] = {"name": body.name, "attached to": body.attached_to}
     if body.rotation.axes:
-        axes: list[Shape] = [str(axis) for axis in body.rotation.axes]
-        shape["rotation"] = {"axes": axes, "angles": [text(angle) for angle in body.rotation.angles]}
+        shape["rotation"] = rotation_shape(body.rotation)
     if body.connection_point != _ZERO_VECTOR:
         shape["connection point"] = vector_shape(body.connection_point)
     if body.relative_velocity is not None:
@@ -211,9 +201,12 @@ def look_shape(look: Look) -> dict[str, Shape]:
     if look.at != _ZERO_VECTOR:
         shape["at"] = vector_shape(look.at)
     if look.rotation.axes:
-        axes: list[Shape] = [str(axis) for axis in look.rotation.axes]
-        shape["rotation"] = {"axes": axes, "angles": [text(angle) for angle in look.rotation.angles]}
+        shape["rotation"] = rotation_shape(look.rotation)
     return shape
+
+
+def rotation_shape(rotation: Rotation) -> dict[str, Shape]:
+    return {"axes": list(map(str, rotation.axes)), "angles": vector_shape(rotation.angles)}
 
 
 def body_inertia_shape(inertia: Inertia) -> Shape:

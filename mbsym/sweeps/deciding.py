@@ -30,6 +30,7 @@ from mbsym.algebra.matrices import added
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.algebra.running_error import Approximate, RunningErrors, certain_sign
+from mbsym.algebra.terms import convolved
 from mbsym.numerics.kernels.interface import Code
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.linear_form import LinearSystem, is_zero
@@ -277,13 +278,8 @@ def _same(a: Coefficients, b: Coefficients) -> bool:
 def _product(factors: Sequence[Coefficients], polynomial: Polynomial) -> Coefficients:
     coefficients: Coefficients = (polynomial,)
     for factor in factors:
-        if len(factor) < 2:
-            continue
-        longer = [polynomial * 0] * (len(coefficients) + len(factor) - 1)
-        for i, a in enumerate(coefficients):
-            for j, b in enumerate(factor):
-                longer[i + j] = longer[i + j] + a * b
-        coefficients = tuple(longer)
+        if len(factor) > 1:
+            coefficients = tuple(convolved(coefficients, factor))
     return coefficients
 
 

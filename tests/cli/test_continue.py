@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, filed
+from conftest import SHIPPED, VAN_DER_POL, filed
 from numerics.test_methods import POLE
 from test_simulate import DOUBLE, mbsym, summary, table, written
 
@@ -242,20 +242,6 @@ def test_nothing_goes_on_after_a_pole(tmp_path: Path) -> None:
     done = mbsym(path, "--time", 3, "-f", "csv", "--continue", tmp_path / "out" / "simulation.json", "--out", tmp_path)
     assert done.exit_code == 2
     assert "there is nothing to go on from" in done.stderr
-
-
-VAN_DER_POL = """
-mbsym: 1
-name: van der Pol
-parameters: {mu: positive}
-bodies:
-  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
-loads:
-  - spring: {coordinate: x, stiffness: 1}
-  - generalized force: {x: mu*(1-x**2)*x_dot}
-values: {mu: 100000}
-initial: {x: {position: 0, velocity: 1/100}}
-"""
 
 
 def test_a_run_that_ended_stiff_goes_on_by_its_last_method(tmp_path: Path) -> None:

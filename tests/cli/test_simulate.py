@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib.util
 import json
 import os
 import signal
@@ -21,7 +20,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from conftest import SHIPPED, WITH_BODIES, parsed
+from conftest import SHIPPED, STIFF, WITH_BODIES, imported, parsed
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -62,21 +61,6 @@ loads:
 
 #: x' = sqrt(2) x**2 from x = 1: at t = 1/sqrt(2) there is no x any more.
 BLOWING_UP = PARTICLE + "  - potential: -x**4\nvalues: {m: 1, k: 0}\ninitial: {x: {position: 1, velocity: sqrt(2)}}\n"
-
-#: Eigenvalues -1e6 and -1e-6, beside a slow oscillation.
-STIFF = """
-mbsym: 1
-name: Two particles, one of them in honey
-parameters: {m: 1, k: 1, c: 1e6}
-bodies:
-  - {name: slow, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
-  - {name: free, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}
-loads:
-  - spring: {coordinate: x, stiffness: k}
-  - spring: {coordinate: y, stiffness: k}
-  - damper: {coordinate: x, coefficient: c}
-initial: {x: 1, y: 1}
-"""
 
 #: The place s = x**3 falls from 1 and passes zero at t = sqrt(2), where M = 9 m x**4 vanishes.
 CUBE = """
@@ -825,11 +809,7 @@ def test_two_energies_are_two_columns(tmp_path: Path) -> None:
     assert np.array_equal(found["generalized_energy"], run.generalized_energy)
     assert np.ptp(found["energy"]) > 1e-3
     assert CliRunner().invoke(main, ["run", str(path), "-f", "python", "-o", str(tmp_path / "run")]).exit_code == 0
-    spec = importlib.util.spec_from_file_location("model_beside", tmp_path / "run" / "model.py")
-    assert spec is not None
-    assert spec.loader is not None
-    model = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(model)
+    model = imported(tmp_path / "run" / "model.py")
     for k, t in enumerate(run.times):
         state = run.coordinates[:, k], run.velocities[:, k], model.DEFAULTS, t
         assert model.energy(*state) == pytest.approx(found["energy"][k], rel=1e-12)

@@ -20,7 +20,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas import angle_sums
 from mbsym.formulas import shape as shapes
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import latex_factor, latex_names, latex_text
+from mbsym.formulas.latex import LatexNames, latex_factor, latex_text
 from mbsym.formulas.python import python_text
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Angles, Product, Sum, angles_as
@@ -38,7 +38,7 @@ def _precise():
 
 def symbols(ring: Ring, values: dict[str, Fraction]) -> dict[str, arb]:
     """The value of each symbol as LaTeX writes it, without blanks."""
-    names, found = latex_names(ring), {r"\pi": arb.pi()}
+    names, found = LatexNames.of(ring), {r"\pi": arb.pi()}
     for name, value in values.items():
         stem, _, accent = name.partition("_d") if name.endswith(("_dot", "_ddot")) else (name, "", "")
         symbol = names[stem].accented("d" + accent) if accent else str(names[name])

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import filed, invoked
+from conftest import filed, imported, invoked
 
 import mbsym
 
@@ -100,23 +98,14 @@ def test_every_wrong_law_is_told_at_once() -> None:
         mbsym.simulate(analysis, 1, inputs={"v": math.inf})
 
 
-def _module(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location("cart_pole_model", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_the_command_tells_and_agrees_with_the_generated_module(tmp_path: Path) -> None:
+def test_the_command_tells_and_agrees_with_the_generatedimported(tmp_path: Path) -> None:
     done = invoked("run", POLE, "--out", tmp_path / "r", "--format", "python", code=0)
     words = ["--time", "1", "--set", "p=0", "--input", "F=20*sin(3*t) - p_dot", "--format", "csv"]
     done = invoked("simulate", POLE, *words, "--out", tmp_path / "s", code=0)
     assert "inputs  F = 20*sin(3*t) - p_dot\n" in done.output
     assert '"inputs": {\n    "F": "20*sin(3*t) - p_dot"\n  }' in (tmp_path / "s" / "simulation.json").read_text()
     rows = np.genfromtxt(tmp_path / "s" / "trajectory.csv", delimiter=",", names=True)
-    module = _module(tmp_path / "r" / "model.py")
+    module = imported(tmp_path / "r" / "model.py")
     start = module.initial_state(module.DEFAULTS, {"p": 0.0})
     _, x = module.simulate(1.0, module.DEFAULTS, start, u=lambda t, x: [20 * math.sin(3 * t) - x[2]])
     for k, name in enumerate(("p", "theta", "p_dot", "theta_dot")):

@@ -10,7 +10,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from conftest import SHIPPED, STATEMENTS
+from conftest import SHIPPED, STATEMENTS, STIFF
 
 import mbsym
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate, contradicted
@@ -58,21 +58,6 @@ def decaying(t: Any) -> list[Any]:
     position = a * mpmath.exp(fast * t) + b * mpmath.exp(slow * t)
     speed = a * fast * mpmath.exp(fast * t) + b * slow * mpmath.exp(slow * t)
     return [position, mpmath.cos(t), speed, -mpmath.sin(t)]
-
-
-STIFF = """
-mbsym: 1
-name: Two particles, one of them in honey
-parameters: {m: 1, k: 1, c: 1e6}
-bodies:
-  - {name: slow, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
-  - {name: free, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}
-loads:
-  - spring: {coordinate: x, stiffness: k}
-  - spring: {coordinate: y, stiffness: k}
-  - damper: {coordinate: x, coefficient: c}
-initial: {x: 1, y: 1}
-"""
 
 
 def true_errors(run: Simulation, solution: Solution, rows: int = 60) -> tuple[float, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.util
 import math
 import re
 import shutil
@@ -14,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, filed
+from conftest import SHIPPED, filed, imported
 from test_kernels import COMPILER, compiled
 
 import mbsym
@@ -49,13 +48,7 @@ def doubles(*values: float) -> Any:
 
 
 def module(text: str, tmp_path: Path) -> ModuleType:
-    path = filed(tmp_path / "model.py", TARGETS["python"].render(mbsym.loads(text), (1, 2, 3)))
-    spec = importlib.util.spec_from_file_location("model", path)
-    assert spec is not None
-    assert spec.loader is not None
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
+    return imported(filed(tmp_path / "model.py", TARGETS["python"].render(mbsym.loads(text), (1, 2, 3))))
 
 
 @needs_compiler

@@ -6,7 +6,7 @@ from math import log
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, VAN_DER_POL
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
@@ -32,21 +32,6 @@ loads:
 values: {L: 10000000}
 initial: {x: {position: 0, velocity: 1}}
 """
-
-#: x'' - mu (1 - x**2) x' + x = 0
-VAN_DER_POL = """
-mbsym: 1
-name: van der Pol
-parameters: {mu: positive}
-bodies:
-  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
-loads:
-  - spring: {coordinate: x, stiffness: 1}
-  - generalized force: {x: mu*(1-x**2)*x_dot}
-values: {mu: 100000}
-initial: {x: {position: 0, velocity: 1/100}}
-"""
-
 
 #: A block that begins at rest, where its friction jumps; it stops at pi, 2 pi, 3 pi and stays at 1/2.
 BLOCK = """

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import mbsym.source
-from mbsym.formulas.latex import latex_names
-from mbsym.formulas.mathml import mathml_names
+from mbsym.formulas.latex import LatexNames
+from mbsym.formulas.mathml import MathNames
 from mbsym.picture import lettering, picture
 from mbsym.picture.looking import principal, projection
 from mbsym.picture.outlined import hull, outlined
@@ -342,8 +342,8 @@ def test_one_drawing_in_every_medium() -> None:
     analysis = mbsym.loads(CART)
     (block,) = drawing(analysis)
     found, language = block.drawn, Language("ru")
-    tex = LatexWriter(latex_names(analysis.ring), language, Labels("x:"), Form.REPORT).block(block)
-    html = str(HtmlWriter(mathml_names(analysis.ring), language).block(block))
+    tex = LatexWriter(LatexNames.of(analysis.ring), language, Labels("x:"), Form.REPORT).block(block)
+    html = str(HtmlWriter(MathNames.of(analysis.ring), language).block(block))
     lines = [x for x in found.marks if isinstance(x, Stroke)]
     dots = [x for x in found.marks if isinstance(x, Dot)]
     assert len(re.findall(r"<path class=\"(?!tip)", html)) == len(lines)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import terminal
-from conftest import filed
+from conftest import filed, imported
 
 import mbsym
 from mbsym.algebra.vectors import Tensor
@@ -263,15 +263,9 @@ def test_what_does_not_know_speeds_says_so(tmp_path):
 
 def module_of(found, tmp_path):
     """model.py, imported."""
-    from importlib.util import module_from_spec, spec_from_file_location
-
     from mbsym.report.code.python_module import render
 
-    file = filed(tmp_path / "model.py", render(found, (3,)))
-    spec = spec_from_file_location("model_in_speeds", file)
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return imported(filed(tmp_path / "model.py", render(found, (3,))))
 
 
 @pytest.mark.parametrize("text", [GYROSTAT.format(told=SPEEDS), GYROSTAT.format(told=POISSON), CARRIED])

@@ -21,7 +21,7 @@ from mbsym.algebra.program import Program
 from mbsym.algebra.vectors import Tensor, Vector
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import latex_names
+from mbsym.formulas.latex import LatexNames
 from mbsym.formulas.told import Definition
 from mbsym.formulas.wolfram import wolfram_names
 from mbsym.mechanics import body_equations as recursion
@@ -148,10 +148,10 @@ def test_names_never_look_like_those_of_the_system() -> None:
     ring = analysis.told.told.ring
     own = [*analysis.system.coordinates, *analysis.system.parameter_names]
     told = [item.name for item in analysis.told.told.definitions]
-    latex = [str(latex_names(ring)[name]) for name in (*own, *told)]
+    latex = [str(LatexNames.of(ring)[name]) for name in (*own, *told)]
     wolfram = [wolfram_names(ring)[name] for name in (*own, *told)]
     assert len(set(latex)) == len(latex) == len(set(wolfram)) == len(wolfram)
-    assert [str(latex_names(ring)[name]) for name in own] == [str(latex_names(analysis.ring)[name]) for name in own]
+    assert [str(LatexNames.of(ring)[name]) for name in own] == [str(LatexNames.of(analysis.ring)[name]) for name in own]
     assert different(analysis, analysis.told) == []
 
 

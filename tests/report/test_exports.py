@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, filed
+from conftest import SHIPPED, filed, imported
 from mutants import corrupted
 from test_reports import NASTY
 from truth_at_states import Point, differences, random_point, truth
@@ -130,13 +130,7 @@ def text_of(name: str, kind: str) -> str:
 
 
 def module(text: str, folder: Path) -> Any:
-    path = filed(folder / "exported.py", text)
-    spec = importlib.util.spec_from_file_location("exported", path)
-    assert spec is not None
-    assert spec.loader is not None
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
+    return imported(filed(folder / "exported.py", text))
 
 
 def by_casadi(text: str, name: str, folder: Path) -> list[dict[str, Any]]:

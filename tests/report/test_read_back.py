@@ -26,8 +26,8 @@ import mbsym
 from mbsym.algebra.ring import ParameterRing, Ring
 from mbsym.analysis import Analysis
 from mbsym.formulas import latex, mathml
-from mbsym.formulas.latex import latex_names
-from mbsym.formulas.mathml import mathml_names
+from mbsym.formulas.latex import LatexNames
+from mbsym.formulas.mathml import MathNames
 from mbsym.formulas.wolfram import wolfram_names
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Requirement
@@ -118,7 +118,7 @@ def exact(value: Fraction) -> fmpq:
 
 def written(ring: Ring, surface: str, here: Mapping[str, Any]) -> dict[str, Any]:
     """Values by symbols, as the surface writes the names of a ring; no two of them are written alike."""
-    in_latex, in_mathml, in_wolfram = latex_names(ring), mathml_names(ring), wolfram_names(ring)
+    in_latex, in_mathml, in_wolfram = LatexNames.of(ring), MathNames.of(ring), wolfram_names(ring)
     symbol: Callable[[str], str] = {
         "latex": lambda name: "".join(str(in_latex[name]).split()),
         "html": lambda name: printed.mathml_symbol(str(in_mathml[name])),

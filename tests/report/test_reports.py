@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.util
 import json
 import os
 import random
@@ -17,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, compiled_latex, filed, needs_pdflatex, precision
+from conftest import SHIPPED, compiled_latex, filed, imported, needs_pdflatex, precision
 from flint import arb, fmpq
 from terminal import told
 
@@ -84,11 +83,7 @@ def in_latex(value: Math) -> str:
 
 
 def loaded(text: str, folder: Path):
-    path = filed(folder / "model.py", text)
-    spec = importlib.util.spec_from_file_location("model_under_test", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return imported(filed(folder / "model.py", text))
 
 
 def state_of(analysis: Analysis, source: random.Random) -> dict[str, Fraction]:

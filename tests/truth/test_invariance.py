@@ -16,6 +16,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from plain_vectors import inverse
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -80,19 +81,6 @@ def changed(one: Sketch, chance: Random) -> Sketch:
         sign = chance.choice((1, -1))
         rows[i] = [a + sign * b for a, b in zip(rows[i], rows[j], strict=True)]
     return replace(one, change=tuple(map(tuple, rows)))
-
-
-def inverse(rows: tuple[Row, ...]) -> list[list[Fraction]]:
-    n = len(rows)
-    work = [[Fraction(x) for x in row] + [Fraction(int(i == j)) for j in range(n)] for i, row in enumerate(rows)]
-    for k in range(n):
-        pivot = next(r for r in range(k, n) if work[r][k])
-        work[k], work[pivot] = work[pivot], work[k]
-        work[k] = [x / work[k][k] for x in work[k]]
-        for r in range(n):
-            if r != k:
-                work[r] = [a - work[r][k] * b for a, b in zip(work[r], work[k], strict=True)]
-    return [row[n:] for row in work]
 
 
 def linear(row: Row, change: tuple[Row, ...], ending: str = "") -> str:

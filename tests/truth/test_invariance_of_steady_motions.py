@@ -22,6 +22,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from plain_vectors import inverse
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -90,16 +91,7 @@ def mixed(chance: Random, size: int) -> list[list[int]]:
 
 def turning_with(rows: Sequence[Sequence[int]]) -> list[Fraction]:
     """The last column of the inverse matrix: the rates of q at which rows.q moves along its last entry alone."""
-    size = len(rows)
-    work = [[*map(Fraction, row), Fraction(int(i == size - 1))] for i, row in enumerate(rows)]
-    for k in range(size):
-        pivot = next(r for r in range(k, size) if work[r][k])
-        work[k], work[pivot] = work[pivot], work[k]
-        work[k] = [x / work[k][k] for x in work[k]]
-        for r in range(size):
-            if r != k:
-                work[r] = [a - work[r][k] * b for a, b in zip(work[r], work[k], strict=True)]
-    return [row[size] for row in work]
+    return [row[-1] for row in inverse(rows)]
 
 
 def linear(row: Sequence[int], names: Sequence[str]) -> str:

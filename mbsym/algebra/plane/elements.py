@@ -19,7 +19,7 @@ from mbsym.algebra.matrices import echelon, faddeev
 from mbsym.algebra.plane.fields import Extension, Over, OverField, Point
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.projection import Polynomial, coefficients
-from mbsym.algebra.terms import univariate
+from mbsym.algebra.terms import convolved, univariate
 
 #: Up to this degree remainders are taken without inverses.
 MOST_PSEUDO = 4
@@ -158,14 +158,7 @@ class ElementPolynomial:
         return ElementPolynomial([a - b for a, b in pairs])
 
     def __mul__(self, other: ElementPolynomial) -> ElementPolynomial:
-        a, b = self.coeffs(), other.coeffs()
-        if not a or not b:
-            return ElementPolynomial([])
-        product = [a[0] * 0] * (len(a) + len(b) - 1)
-        for i, x in enumerate(a):
-            for j, y in enumerate(b):
-                product[i + j] = product[i + j] + x * y
-        return ElementPolynomial(product)
+        return ElementPolynomial(convolved(self.coeffs(), other.coeffs()))
 
     def __mod__(self, other: ElementPolynomial) -> ElementPolynomial:
         """A positive multiple of the remainder, which serves gcds and Sturm's chains alike.
@@ -415,13 +408,7 @@ class TowerField:
         return self.over.trimmed([x + b[k] if k < len(b) else x for k, x in enumerate(a)])
 
     def times(self, a: OverField, b: OverField) -> OverField:
-        if not a or not b:
-            return []
-        product = [fmpq_poly([0])] * (len(a) + len(b) - 1)
-        for i, x in enumerate(a):
-            for j, y in enumerate(b):
-                product[i + j] = product[i + j] + x * y
-        return self.reduced(product)
+        return self.reduced(convolved(a, b)) if a and b else []
 
     def sign(self, a: OverField) -> int:
         signum = self.root.sign(self.reduced(a))

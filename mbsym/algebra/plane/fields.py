@@ -19,6 +19,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.numbers import AlgebraicNumber, Ball, Isolated, Rational, enclosure, sign
 from mbsym.algebra.plane.projection import Polynomial, coefficients
+from mbsym.algebra.terms import fraction_modulo
 
 # Greatest common divisors over QQ(alpha) by way of finite rings, where Euclid's numbers would grow without bound.
 #
@@ -151,28 +152,13 @@ def _reconstructed(p: Sequence[Image], prime: int) -> list[Element] | None:
     for x in p:
         row = []
         for c in x.coeffs():
-            value = _fraction(int(c) * below % prime, prime, most)
+            value = fraction_modulo(int(c) * below % prime, prime, most)
             if value is None or below * value[1] > most:
                 return None
             below *= value[1]
             row.append(fmpq(value[0], below))
         elements.append(fmpq_poly(row))
     return elements
-
-
-def _fraction(value: int, prime: int, most: int) -> tuple[int, int] | None:
-    """(n, d) with n = d value modulo the prime, |n| <= most, 0 < d <= most; None where there are none."""
-    if value <= most:
-        return value, 1
-    if prime - value <= most:
-        return value - prime, 1
-    r0, r1, s0, s1 = prime, value, 0, 1
-    while r1 > most:
-        quotient = r0 // r1
-        r0, r1, s0, s1 = r1, r0 - quotient * r1, s1, s0 - quotient * s1
-    if not 0 < abs(s1) <= most:
-        return None
-    return (r1, s1) if s1 > 0 else (-r1, -s1)
 
 
 Element = Any  # a flint.fmpq_poly in alpha

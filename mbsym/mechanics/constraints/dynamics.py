@@ -53,12 +53,12 @@ from mbsym.mechanics.constraints.dependence import Compliance, Dependent, measur
 from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept_rows
 from mbsym.mechanics.constraints.speed_rows import speed_rows, state_rows
 from mbsym.mechanics.factorisation import Elimination, mass_matrix
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.speed_programs import restoring, speed_program
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import SEED, drawn
-from mbsym.mechanics.variables import program_environment, ring_environment
+from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import Body, System
 
 DEPENDENT = "the constraints are dependent everywhere"
@@ -134,7 +134,7 @@ def empty_rows(system: System, ring: Ring, rows: Sequence[Row], form: SpeedForm 
                 row.name: [row.position or ring.zero, row.velocity, row.acceleration, *row.partials] for row in exact
             }
             return frozenset(name for name, own in parts.items() if all(form.vanishes(x) is True for x in own))
-        scene = Scene(system, ring, ring_environment(system, ring), ring)
+        scene = over_ring(system, ring)
         return frozenset(row.name for row in constraint_rows(scene, kept_rows(rows)) if row.is_trivial(ring))
     except Failure:
         return frozenset()

@@ -12,9 +12,9 @@ from typing import Generic
 from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
 from mbsym.expressions.tree import names
-from mbsym.mechanics.kinematics import BodyMotion, Scene
+from mbsym.mechanics.kinematics import BodyMotion, Scene, over_ring
 from mbsym.mechanics.loads.interface import Action, Wrench
-from mbsym.mechanics.variables import expressions, ring_environment
+from mbsym.mechanics.variables import expressions
 from mbsym.model.loads import NewtonianGravity
 from mbsym.model.system import INERTIAL
 
@@ -61,16 +61,12 @@ def radius_vectors(load: NewtonianGravity, scene: Scene[S]) -> list[tuple[BodyMo
 def outward(load: NewtonianGravity, scene: Scene[S]) -> Vector[S]:
     """p from the centre to the origin of ``about``, over the ring, in the axes of ``about``."""
     ring = scene.ring
-    closed = scene if scene.algebra is ring else _closed_scene(scene)
+    closed = scene if scene.algebra is ring else over_ring(scene.system, ring)
     frame = scene.common_ancestor(load.about, load.centre)
     p = closed.position(closed.zero(load.about), frame)
     if frame != load.centre:
         p = p - closed.position(closed.zero(load.centre), frame)
     return closed.to_axes(p, load.about)
-
-
-def _closed_scene(scene: Scene[S]) -> Scene[S]:
-    return Scene(scene.system, scene.ring, ring_environment(scene.system, scene.ring), scene.ring)
 
 
 def _carried(

@@ -88,14 +88,8 @@ class Segment:
         """Balls that contain every component at ``t`` (a point or an interval of times within the segment)."""
         if t == self.end:
             return list(self.last)
-        s = t - self.start
-        balls = []
-        for row, spread in zip(self.coefficients, self.spread, strict=True):
-            value = row[-1]
-            for coefficient in row[-2::-1]:
-                value = value * s + coefficient
-            balls.append(value + arb(0, spread))
-        return balls
+        rows = zip(self.coefficients, self.spread, strict=True)
+        return [_horner(row, t - self.start) + arb(0, spread) for row, spread in rows]
 
 
 class CannotStep(Exception):

@@ -36,11 +36,12 @@ from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
 from mbsym.formulas.python import python_text
 from mbsym.mechanics.energy import own_determinants
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.programs import programs
 from mbsym.mechanics.rest import at_numbers
 from mbsym.mechanics.variables import program_environment, ring_environment, ring_of
 from mbsym.model.system import System, velocity_name
+from mbsym.numerics.extremes.singular_positions import multiple_of_pi
 from mbsym.numerics.scenario import Scenario, rounded
 
 # Which of the two fails where M is singular, the coordinates or the model: ranks at a point, with many bits.
@@ -79,10 +80,8 @@ class Kinds:
             masses, moved = self._masses(point), self._motions(point)
             if any(not bool(x > 0) for x in self.usual):
                 return OPEN
-            n = self.n
-            scaled = [[masses[i, j] / (self.usual[i] * self.usual[j]).sqrt() for j in range(n)] for i in range(n)]
-            shown = [[moved[i, j] / row for j in range(n)] for i, row in enumerate(self.rows) if bool(row > 0)]
-            lost, hidden = (n - len(pivot_rows([_midpoints(x) for x in rows], NOTHING)) for rows in (scaled, shown))
+            shown = [[moved[i, j] / row for j in range(self.n)] for i, row in enumerate(self.rows) if bool(row > 0)]
+            lost, hidden = self._lost(self._scaled(masses)), self._lost(shown)
         if not lost:
             return OPEN
         if hidden == lost:
@@ -92,11 +91,17 @@ class Kinds:
     def singular(self, place: Mapping[str, Any]) -> bool:
         """Whether M has less than full rank at the scenario's position with the coordinates of ``place``."""
         with ctx.workprec(BITS):
-            masses, n = self._masses(self._point(place, 0)), self.n
-            if any(not bool(x > 0) for x in self.usual):
-                return False
-            scaled = [[masses[i, j] / (self.usual[i] * self.usual[j]).sqrt() for j in range(n)] for i in range(n)]
-            return len(pivot_rows([_midpoints(row) for row in scaled], NOTHING)) < n
+            masses = self._masses(self._point(place, 0))
+            return all(bool(x > 0) for x in self.usual) and self._lost(self._scaled(masses)) > 0
+
+    def _scaled(self, masses: Any) -> list[list[Any]]:
+        """M by the usual sizes of its diagonal."""
+        n = range(self.n)
+        return [[masses[i, j] / (self.usual[i] * self.usual[j]).sqrt() for j in n] for i in n]
+
+    def _lost(self, rows: Sequence[Sequence[Any]]) -> int:
+        """By how much the rank is less than n."""
+        return self.n - len(pivot_rows([_midpoints(row) for row in rows], NOTHING))
 
     def _point(self, place: Mapping[str, Any], beside: int) -> dict[str, Any]:
         point: dict[str, Any] = {}
@@ -265,7 +270,7 @@ def _of_determinant(ring: Ring, system: System, ranges: Mapping[str, Fraction]) 
 def _joint_sets(system: System, ring: Ring, ranges: Mapping[str, Fraction]) -> list[tuple[str, ZeroSet]]:
     """(body, set) for every body that three turns about independent coordinates orient."""
     joint_sets = []
-    scene = Scene(system, ring, ring_environment(system, ring), ring, frozen=True)
+    scene = over_ring(system, ring, frozen=True)
     for body in system.bodies:
         turns = scene.motions[body.name].turns
         if len(turns) != 3 or turns[0].axis == turns[1].axis or turns[1].axis == turns[2].axis:
@@ -341,20 +346,11 @@ def _value(zero: Zero) -> Value:
     if zero.rational is not None:
         return Value(_number(zero.rational), zero.rational)
     exact = _exact(zero.ball)
-    return Value(_multiple_of_pi(zero.turns) if zero.turns is not None else f"{float(exact):.12g}", exact)
+    return Value(multiple_of_pi(zero.turns) if zero.turns is not None else f"{float(exact):.12g}", exact)
 
 
 def _number(value: Fraction) -> str:
     return str(value) if value.denominator < 10_000 else f"{float(value):.12g}"
-
-
-def _multiple_of_pi(turns: Fraction) -> str:
-    """``pi/2``, ``-pi``, ``0``, ``2*pi/3``."""
-    if not turns:
-        return "0"
-    top, bottom = turns.numerator, turns.denominator
-    sign, top = ("-" if top < 0 else ""), abs(top)
-    return sign + ("pi" if top == 1 else f"{top}*pi") + ("" if bottom == 1 else f"/{bottom}")
 
 
 def _text(ring: Ring, factor: Polynomial) -> str:
@@ -410,7 +406,7 @@ def _searched(scenario: Scenario, kinds: Kinds, joints: Sequence[tuple[str, Zero
             with ctx.workprec(BITS):
                 angle = arb.pi() * ball(turns)
             if kinds.singular({name: angle}):
-                value = Value(_multiple_of_pi(turns), _exact(angle))
+                value = Value(multiple_of_pi(turns), _exact(angle))
                 kind = kinds.kind({name: angle})
                 sets.append(SingularSet((name,), (value,), "", ({name: value.exact},), False, kind, "", False))
     text = "multiples of pi/12 of one coordinate at a time; det M itself was not to be had: [[reason]]"

@@ -291,7 +291,7 @@ class Search:
                     return None
                 sine, cosine = ((0, 1), (1, 0), (0, -1), (-1, 0))[quarters % 4]
                 basic[name] = fmpq(sine), fmpq(cosine)
-                labels[name] = _quarter(quarters)
+                labels[name] = multiple_of_pi(Fraction(quarters, 2))
                 exact[name] = Fraction(quarters, 2)
                 continue
             value = Fraction(x).limit_denominator(SHORT)
@@ -334,11 +334,11 @@ class _Irrational:
     __pow__ = _another
 
 
-def _quarter(quarters: int) -> str:
-    """``0``, ``pi/2``, ``-pi/2``, ``pi``."""
-    top, bottom = Fraction(quarters, 2).as_integer_ratio()
-    if not top:
+def multiple_of_pi(turns: Fraction) -> str:
+    """``pi/2``, ``-pi``, ``0``, ``2*pi/3``."""
+    if not turns:
         return "0"
+    top, bottom = turns.numerator, turns.denominator
     sign, top = ("-" if top < 0 else ""), abs(top)
     return sign + ("pi" if top == 1 else f"{top}*pi") + ("" if bottom == 1 else f"/{bottom}")
 

@@ -173,14 +173,24 @@ class Function:
         """What is written next starts at the label."""
         self.lines.append(f"{label}:")
 
+    def here(self) -> str:
+        """A label for what is written next."""
+        label = self.label()
+        self.jump(label)
+        self.place(label)
+        return label
+
+    def add(self, change: Value | int, kind: str, place: Value, index: Value | int = 0) -> None:
+        """The number there grows."""
+        self.store(self.load(kind, place, index) + change, kind, place, index)
+
     @contextmanager
     def repeat(self, count: Value | int, start: Value | int = 0) -> Iterator[Value]:
         """The body for start, start + 1, ..., count - 1."""
         index = self.slot(INTEGER)
         self.store(self.number(start, INTEGER), INTEGER, index)
-        test, body, done = self.label(), self.label(), self.label()
-        self.jump(test)
-        self.place(test)
+        body, done = self.label(), self.label()
+        test = self.here()
         now = self.load(INTEGER, index)
         self.branch(now.compare("<", count), body, done)
         self.place(body)
@@ -206,6 +216,14 @@ class Function:
         yield
         self.jump(after)
         self.place(after)
+
+    def leave_if(self, bit: Value, result: Value | int, unless: bool = False) -> None:
+        """Returns the result if the bit is set, or ``unless`` it is."""
+        out, on = self.label(), self.label()
+        self.branch(bit, *((on, out) if unless else (out, on)))
+        self.place(out)
+        self.leave(result)
+        self.place(on)
 
     def leave(self, result: Value | int) -> None:
         self.lines.append(f"  ret i64 {self.number(result, INTEGER).text}")

@@ -18,7 +18,7 @@ from mbsym.mechanics.loads.orbit import Orbit, central_inertia, trace
 from mbsym.mechanics.programs import forward_dynamics
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
-from mbsym.model.system import Body, Inertia, Rotation, Tensor, acceleration_name, rational
+from mbsym.model.system import Body, Inertia, Rotation, System, Tensor, acceleration_name, rational
 from mbsym.model.welded import lumped
 from mbsym.numerics.ledger.entry import OPERATIONS, SECONDS, Measure, Saving
 from mbsym.numerics.ledger.work import Symbols, Work, changed_bodies, moving_names
@@ -36,10 +36,8 @@ def massless_bodies(work: Work) -> Iterator[Saving]:
     def heavy(body: Body) -> Body:
         return replace(body, mass=symbols("m")) if body.name in massless else body
 
-    other = changed_bodies(work.system, heavy, symbols)
     why = Message("structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0")
-    measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(Kind.MASSLESS, _in_order(work, massless), why, Certainty.PROVED, measures)
+    yield _against(work, Kind.MASSLESS, massless, why, changed_bodies(work.system, heavy, symbols))
 
 
 def welded_bodies(work: Work) -> Iterator[Saving]:
@@ -76,10 +74,8 @@ def point_masses(work: Work) -> Iterator[Saving]:
         tensor: Tensor = ((a, ZERO, ZERO), (ZERO, b, ZERO), (ZERO, ZERO, c))
         return replace(body, inertia=Inertia("mass centre", tensor))
 
-    other = changed_bodies(work.system, extended, symbols)
     why = Message("structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment")
-    measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(Kind.POINTS, _in_order(work, points), why, Certainty.PROVED, measures)
+    yield _against(work, Kind.POINTS, points, why, changed_bodies(work.system, extended, symbols))
 
 
 def unused_axes(work: Work) -> Iterator[Saving]:
@@ -97,10 +93,8 @@ def unused_axes(work: Work) -> Iterator[Saving]:
             turns.append((turns[-1][0] % 3 + 1 if turns else 1, symbols("x")))
         return replace(body, rotation=Rotation(tuple(x for x, _ in turns), tuple(x for _, x in turns)))
 
-    other = changed_bodies(work.system, turned, symbols)
     why = Message("structural: a turn that is not there is the identity matrix, and is never multiplied")
-    measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(Kind.AXES, _in_order(work, affected), why, Certainty.PROVED, measures)
+    yield _against(work, Kind.AXES, affected, why, changed_bodies(work.system, turned, symbols))
 
 
 def constant_rotations(work: Work) -> Iterator[Saving]:
@@ -186,5 +180,8 @@ def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | N
     return ratio if 0 < ratio < float("inf") else None
 
 
-def _in_order(work: Work, bodies: set[str]) -> tuple[str, ...]:
-    return tuple(body.name for body in work.system.bodies if body.name in bodies)
+def _against(work: Work, kind: Kind, bodies: set[str], why: Message, other: System) -> Saving:
+    """What these bodies save against others in a system."""
+    measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
+    listed = tuple(body.name for body in work.system.bodies if body.name in bodies)
+    return Saving(kind, listed, why, Certainty.PROVED, measures)

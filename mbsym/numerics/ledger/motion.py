@@ -11,10 +11,10 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import names
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import over_ring
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.states import ball_states
-from mbsym.mechanics.variables import expressions, ring_environment, ring_of
+from mbsym.mechanics.variables import expressions, ring_of
 from mbsym.model.system import INERTIAL, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure, Saving
@@ -94,7 +94,7 @@ def _plane(system: System) -> int | None:
     """The inertial axis (1 to 3) to which all motion is normal: omega_k = w e, V_Ck.e = 0 for every body."""
     ring = ring_of(system)
     try:
-        scene = Scene(system, ring, ring_environment(system, ring), ring)
+        scene = over_ring(system, ring)
         axes = {1, 2, 3}
         for motion in scene.motions.values():
             spin = scene.to_axes(motion.angular_velocity, INERTIAL)
@@ -133,7 +133,7 @@ def _undriven(work: Work) -> set[str]:
         return {name for name, force in forces.items() if force.is_zero}
     ring = ring_of(work.system)
     try:
-        generalized = generalized_forces(Scene(work.system, ring, ring_environment(work.system, ring), ring))
+        generalized = generalized_forces(over_ring(work.system, ring))
     except Failure:
         return set()
     return {name for name, force in generalized.items() if ring.reduce(force).is_zero()}

@@ -19,9 +19,9 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, Name
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.energy import kinetic_energy
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import over_ring
 from mbsym.mechanics.programs import ForwardDynamics, constants, forward_dynamics
-from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import Body, Parameter, System
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure
 from mbsym.numerics.scenario import Incomplete, Scenario, scenario
@@ -174,7 +174,7 @@ class Work:
         ring = ring_of(system, self.analysis.terms)
         ring.limit_work(WORK)
         try:
-            return len(kinetic_energy(Scene(system, ring, ring_environment(system, ring), ring))), ring.work
+            return len(kinetic_energy(over_ring(system, ring))), ring.work
         except NoClosedForm:
             return None, ring.work
 

@@ -10,8 +10,6 @@ measured (``magnitudes``).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from fractions import Fraction
 from math import log
 
@@ -59,14 +57,12 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
     total = f.slot(s.kind)
     step, base = f.load(s.clock, clock, Clock.STEP), f.load(s.clock, clock, Clock.BASE)
     h = step.converted(s.kind)
-    again = f.label()
-    f.jump(again)
-    f.place(again)
+    again = f.here()
     time = f.load(s.clock, clock, Clock.TIME)
     _leave_when_due(f, s, time)
     if constrained:
         _stop_before_singular(f)
-    known, unknown, first = f.label(), f.label(), f.label()
+    known, unknown, first = (f.label() for _ in range(3))
     f.branch(f.load(INTEGER, count, Count.FRESH).compare("!=", 0), known, unknown)
     f.place(known)
     s.copy(s.slope(k, stages), s.slope(k, 0))
@@ -75,24 +71,20 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
     f.place(unknown)
     s.state_argument(x)
     s.evaluate(time, s.slope(k, 0))
-    f.store(f.load(INTEGER, count, Count.EVALUATIONS) + 1, INTEGER, count, Count.EVALUATIONS)
+    f.add(1, INTEGER, count, Count.EVALUATIONS)
     f.jump(first)
     f.place(first)
     for place, row in enumerate(tableau.stages[1:], 1):
         s.stage(x, k, row, place, time, step)
-    f.store(f.load(INTEGER, count, Count.EVALUATIONS) + (stages - 1), INTEGER, count, Count.EVALUATIONS)
+    f.add(stages - 1, INTEGER, count, Count.EVALUATIONS)
     f.store(0, s.kind, total)
     for i in f.each(size):
         change = h * s.combination(k, tableau.weights, i)
         f.store(change, s.kind, moved, i)
         f.store(f.load(s.kind, x, i), s.kind, old, i)
         new = add_compensated(f, s.kind, x, f["carry"], i, change)
-        f.store(f.load(s.kind, total) + (new - new), s.kind, total)
-    finite, over = f.label(), f.label()
-    f.branch(f.load(s.kind, total).compare("<=", 0), finite, over)
-    f.place(over)
-    f.leave(Reply.STOPPED)
-    f.place(finite)
+        f.add(new - new, s.kind, total)
+    f.leave_if(f.load(s.kind, total).compare("<=", 0), Reply.STOPPED, unless=True)
     number = f.load(INTEGER, count, Count.NUMBER) + 1
     f.store(number, INTEGER, count, Count.NUMBER)
     f.store(time, s.clock, clock, Clock.START)
@@ -100,7 +92,7 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
     f.store(base + number.converted(s.clock) * step, s.clock, clock, Clock.TIME)
     if constrained:
         near = _led_back(f, s, moved)
-    f.store(f.load(INTEGER, count, Count.STEPS) + 1, INTEGER, count, Count.STEPS)
+    f.add(1, INTEGER, count, Count.STEPS)
     if constrained:
         _note(f, near)
     f.jump(again)
@@ -109,11 +101,9 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
 
 def _leave_when_due(f: Function, s: Stages, time: Value) -> None:
     """Returns where the time has come, or as many steps as are allowed have been tried."""
-    with _leaving(f, time.compare(">=", f.load(s.clock, f["clock"], Clock.UNTIL)), Reply.REACHED):
-        pass
+    f.leave_if(time.compare(">=", f.load(s.clock, f["clock"], Clock.UNTIL)), Reply.REACHED)
     left = f.load(INTEGER, f["count"], Count.LEFT)
-    with _leaving(f, left.compare("<=", 0), Reply.PAUSED):
-        pass
+    f.leave_if(left.compare("<=", 0), Reply.PAUSED)
     f.store(left - 1, INTEGER, f["count"], Count.LEFT)
 
 
@@ -132,7 +122,7 @@ def _led_back(f: Function, s: Stages, moved: Value | None = None) -> Value:
             part = f.load(s.kind, change, i)
             add_compensated(f, s.kind, f["x"], f["carry"], i, part)
             if moved is not None:
-                f.store(f.load(s.kind, moved, i) + part, s.kind, moved, i)
+                f.add(part, s.kind, moved, i)
     return f.load(s.kind, change, s.size).compare(">", 1)
 
 
@@ -143,8 +133,7 @@ def _note(f: Function, near: Value) -> None:
 
 def _stop_before_singular(f: Function) -> None:
     """Ends the run before a singular position of the constraints."""
-    with _leaving(f, f.load(INTEGER, f["count"], Count.SINGULARLY).compare("!=", 0), Reply.STOPPED):
-        pass
+    f.leave_if(f.load(INTEGER, f["count"], Count.SINGULARLY).compare("!=", 0), Reply.STOPPED)
 
 
 def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, constrained: bool = False) -> str:
@@ -163,26 +152,21 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
     relative = f.load(s.clock, clock, Clock.RELATIVE).converted(s.kind)
     absolute = f.load(s.clock, clock, Clock.ABSOLUTE).converted(s.kind)
 
-    again, some, step_now, large, tried, good, bad = (f.label() for _ in range(7))
-    f.jump(again)
-    f.place(again)
+    good, bad = f.label(), f.label()
+    again = f.here()
     time = f.load(s.clock, clock, Clock.TIME)
     _leave_when_due(f, s, time)
     if constrained:
         _stop_before_singular(f)
     step = f.load(s.clock, clock, Clock.STEP)
     least = time.absolute() * (4 * Fraction(float(np.finfo(clock_dtype(s.clock)).eps)))
-    f.branch(step.compare(">", least) & step.compare(">", Fraction(1, 10**200)), large, some)
-    f.place(some)
-    f.leave(Reply.STOPPED)
-    f.place(large)
+    large = step.compare(">", least) & step.compare(">", Fraction(1, 10**200))
+    f.leave_if(large, Reply.STOPPED, unless=True)
     # The last slope of an accepted step is the first of the next; it is copied late because dense output needs both.
     if explicit:
         with f.when(f.load(INTEGER, count, Count.FRESH).compare("!=", 0)):
             s.copy(s.slope(k, stages), s.slope(k, 0))
             f.store(0, INTEGER, count, Count.FRESH)
-    f.jump(step_now)
-    f.place(step_now)
     if isinstance(tableau, Tableau):
         for place, row in enumerate(tableau.stages[1:], 1):
             s.stage(x, k, row, place, time, step)
@@ -199,15 +183,13 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
         s.state_argument(candidate)
         s.evaluate(time + step, s.slope(k, stages))
     error = estimated(f, s, tableau, x, candidate, k, weight, relative, absolute)
-    f.store(f.load(INTEGER, count, Count.EVALUATIONS) + evaluations, INTEGER, count, Count.EVALUATIONS)
-    f.jump(tried)
-    f.place(tried)
+    f.add(evaluations, INTEGER, count, Count.EVALUATIONS)
     f.branch(error.compare("<=", 1), good, bad)
 
     f.place(bad)
     shrink, usable = shrinkage(f, tableau, error)
     f.store(step * shrink.converted(s.clock), s.clock, clock, Clock.STEP)
-    f.store(f.load(INTEGER, count, Count.REJECTED) + 1, INTEGER, count, Count.REJECTED)
+    f.add(1, INTEGER, count, Count.REJECTED)
     f.store(usable.choose(f.number(0, INTEGER), f.number(1, INTEGER)), INTEGER, count, Count.INFINITE)
     f.store(1, INTEGER, count, Count.CAREFUL)
     f.jump(again)
@@ -226,10 +208,10 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
     if explicit and (constrained or not at_the_end):
         s.state_argument(x)
         s.evaluate(f.load(s.clock, clock, Clock.TIME), s.slope(k, stages))
-        f.store(f.load(INTEGER, count, Count.EVALUATIONS) + 1, INTEGER, count, Count.EVALUATIONS)
+        f.add(1, INTEGER, count, Count.EVALUATIONS)
     f.store(1, INTEGER, count, Count.FRESH)
     f.store(0, INTEGER, count, Count.INFINITE)
-    f.store(f.load(INTEGER, count, Count.STEPS) + 1, INTEGER, count, Count.STEPS)
+    f.add(1, INTEGER, count, Count.STEPS)
     careful = f.load(INTEGER, count, Count.CAREFUL).compare("!=", 0)
     factor, size_of_error = growth(f, tableau, error, f.load(s.clock, clock, Clock.PREVIOUS).converted(f.real), careful)
     grown, longest = step * factor.converted(s.clock), f.load(s.clock, clock, Clock.LONGEST)
@@ -255,19 +237,19 @@ def _linear_stages(f: Function, s: Stages, tableau: Rosenbrock, time: Value, ste
     s.state_argument(x)
     s.evaluate(time, begin)
     f.do("slopes", s.argument, slopes)
-    f.store(f.load(INTEGER, f["count"], Count.JACOBIANS) + 1, INTEGER, f["count"], Count.JACOBIANS)
+    f.add(1, INTEGER, f["count"], Count.JACOBIANS)
     nothing = f.slot(s.kind)
     f.store(0, s.kind, nothing)
     for i in f.each(size):
         by_time = f.load(s.kind, slopes, i)
-        f.store(f.load(s.kind, nothing) + (by_time - by_time), s.kind, nothing)
+        f.add(by_time - by_time, s.kind, nothing)
     with f.repeat(size * size) as entry:
         slope = f.load(s.kind, slopes, entry + size)
-        f.store(f.load(s.kind, nothing) + (slope - slope), s.kind, nothing)
+        f.add(slope - slope, s.kind, nothing)
         f.store(0 - slope, s.kind, matrix, entry)
     with f.repeat(size) as row:
         place = row * (size + 1)
-        f.store(f.load(s.kind, matrix, place) + inverse / tableau.gamma, s.kind, matrix, place)
+        f.add(inverse / tableau.gamma, s.kind, matrix, place)
     factorise(f, s.kind, matrix, size, exchanged)
     for number, (stage, coupling) in enumerate(zip(tableau.stages, tableau.coupling, strict=True)):
         own = s.slope(k, number)
@@ -287,17 +269,6 @@ def _linear_stages(f: Function, s: Stages, tableau: Rosenbrock, time: Value, ste
                 total = total + inverse * s.combination(k, coupling, i)
             f.store(total, s.kind, own, i)
         solve(f, s.kind, matrix, own, size, exchanged)
-
-
-@contextmanager
-def _leaving(f: Function, bit: Value, result: int) -> Iterator[None]:
-    """Returns ``result`` if the bit is set."""
-    yes, no = f.label(), f.label()
-    f.branch(bit, yes, no)
-    f.place(yes)
-    yield
-    f.leave(result)
-    f.place(no)
 
 
 def estimated(
@@ -326,7 +297,7 @@ def estimated(
         inverse = 1 / scale
         for total, row in zip(totals, tableau.errors, strict=True):
             value = (s.combination(k, row, i) * inverse).converted(f.real)
-            f.store(f.load(f.real, total) + value * value, f.real, total)
+            f.add(value * value, f.real, total)
     squares = [f.load(f.real, total) for total in totals]
     h = step.converted(f.real).absolute()
     if len(squares) == 1:

@@ -171,7 +171,7 @@ def _keep(f: Function, s: Stages, terms: list[Value], i: Value | int) -> None:
 
 
 def _count(f: Function, evaluations: int) -> None:
-    f.store(f.load(INTEGER, f["count"], Count.EVALUATIONS) + evaluations, INTEGER, f["count"], Count.EVALUATIONS)
+    f.add(evaluations, INTEGER, f["count"], Count.EVALUATIONS)
     f.store(f.load(INTEGER, f["count"], Count.STEPS), INTEGER, f["count"], Count.PREPARED)
 
 
@@ -217,14 +217,10 @@ def _fill_text(scalar: Scalar) -> str:
     row, end = f.slot(INTEGER), f.slot(INTEGER)
     f.store(f["first"], INTEGER, row)
     slack = f.load(clock, f["clock"], Clock.SLACK)
-    again, over, go, reached, stopped, write_rows = (f.label() for _ in range(6))
-    f.jump(again)
-    f.place(again)
+    reached, stopped, write_rows = (f.label() for _ in range(3))
+    again = f.here()
     now = f.load(INTEGER, row)
-    f.branch(now.compare(">=", last), over, go)
-    f.place(over)
-    f.leave(last)
-    f.place(go)
+    f.leave_if(now.compare(">=", last), last)
     f.store(f.load(clock, times, now) - slack, clock, f["clock"], Clock.UNTIL)
     reply = f.call("march", INTEGER, *(f[name] for name in ARGUMENTS))
     f.branch(reply.compare("==", Reply.REACHED), reached, stopped)
@@ -236,9 +232,8 @@ def _fill_text(scalar: Scalar) -> str:
         prepared = ("x", "old", "k", "terms", "clock", "count")
         f.call("prepare", INTEGER, *(f[name] for name in prepared))
     f.store(now + 1, INTEGER, end)
-    more, one_more, check = f.label(), f.label(), f.label()
-    f.jump(check)
-    f.place(check)
+    more, one_more = f.label(), f.label()
+    check = f.here()
     upto = f.load(INTEGER, end)
     f.branch(upto.compare("<", last), more, write_rows)
     f.place(more)

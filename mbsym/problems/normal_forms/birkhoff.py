@@ -58,13 +58,23 @@ class NormalForm:
 
 def matrix_of(hamiltonian: Truncated) -> list[list[Any]]:
     """A of x' = A x: x' = dH/dp, p' = -dH/dx."""
+    rows, n = hessian(hamiltonian), hamiltonian.space.variables // 2
+    return [*rows[n:], *([-x for x in row] for row in rows[:n])]
+
+
+def hessian(hamiltonian: Truncated) -> list[list[Any]]:
+    """The second derivatives of H at 0."""
     m = hamiltonian.space.variables
-    n = m // 2
     rows = [hamiltonian.part(2).derivative(k) for k in range(m)]
     unit = [tuple(int(j == k) for j in range(m)) for k in range(m)]
-    return [[rows[n + i][unit[j]] for j in range(m)] for i in range(n)] + [
-        [-rows[i][unit[j]] for j in range(m)] for i in range(n)
-    ]
+    return [[row[x] for x in unit] for row in rows]
+
+
+def pairing(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    """[a, b] = sum a_k b_(n + k) - a_(n + k) b_k."""
+    n = len(a) // 2
+    first, *others = (a[i] * b[n + i] - a[n + i] * b[i] for i in range(n))
+    return sum(others, first)
 
 
 def absolute(x: Any) -> float:
@@ -81,16 +91,13 @@ def diagonalised(
     """
     space = hamiltonian.space
     m = space.variables
-    n = m // 2
     adjugates, _ = faddeev(matrix_of(hamiltonian), space.zero, space.one)
     first, second = [], []
     for root in roots:
         best: tuple[float, list[Any], list[Any], Any] | None = None
         for column in range(m):
             v, u = (_column(adjugates, s, column, space.zero) for s in (root, -root))
-            d = space.zero
-            for i in range(n):
-                d = d + v[i] * u[n + i] - v[n + i] * u[i]
+            d = pairing(v, u)
             measure = size(d)
             if best is None or measure > best[0]:
                 best = (measure, v, u, d)

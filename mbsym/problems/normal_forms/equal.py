@@ -31,11 +31,11 @@ from flint import acb, arb
 
 from mbsym.algebra.matrices import dot, faddeev
 from mbsym.algebra.truncated import Space, Truncated, bracket
-from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, matrix_of, normal_form
+from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, matrix_of, normal_form, pairing
 from mbsym.problems.normal_forms.exact import on_double_pair
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why, defects
 from mbsym.problems.normal_forms.twist import NotVerified, definite
-from mbsym.problems.normal_forms.zero_root import conjugate, on_double_root, pairing
+from mbsym.problems.normal_forms.zero_root import conjugate, on_double_root
 
 #: Arcs of 2 pi/2^MOST_HALVINGS are not halved again.
 MOST_HALVINGS = 40

@@ -36,7 +36,15 @@ from flint import acb, acb_poly, arb, arb_mat, ctx
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.problems.normal_forms.birkhoff import NormalForm, absolute, diagonalised, matrix_of, normal_form
+from mbsym.problems.normal_forms.birkhoff import (
+    NormalForm,
+    absolute,
+    diagonalised,
+    hessian,
+    matrix_of,
+    normal_form,
+    pairing,
+)
 from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theorem, Why, defects
 
 #: Whether k_1 w_1 + k_2 w_2 + ... = 0 for the absolute frequencies: exactly, or None where that is not known.
@@ -93,12 +101,9 @@ def frequencies(hamiltonian: Truncated) -> list[arb] | Judged:
 
 def definite(hamiltonian: Truncated) -> Judged | None:
     """Stable where H_2 is definite: the minors of its matrix are positive, or those of its negative (Sylvester)."""
-    m = hamiltonian.space.variables
-    rows = [hamiltonian.part(2).derivative(k) for k in range(m)]
-    unit = [tuple(int(j == k) for j in range(m)) for k in range(m)]
-    matrix = [[rows[i][unit[j]].real for j in range(m)] for i in range(m)]
+    matrix = [[x.real for x in row] for row in hessian(hamiltonian)]
     for sign in (1, -1):
-        minors = (arb_mat([[sign * x for x in row[:k]] for row in matrix[:k]]).det() for k in range(1, m + 1))
+        minors = (arb_mat([[sign * x for x in row[:k]] for row in matrix[:k]]).det() for k in range(1, len(matrix) + 1))
         if all(minor > 0 for minor in minors):
             try:
                 roots = squares(hamiltonian)
@@ -112,13 +117,8 @@ def definite(hamiltonian: Truncated) -> Judged | None:
 def signed(hamiltonian: Truncated, magnitudes: Sequence[arb]) -> list[arb]:
     """Omega_k: w_k with the sign of the energy of its oscillation, by the eigenvector: Im v.J conj(v) < 0 for it."""
     result = []
-    n = hamiltonian.space.variables // 2
     for w in magnitudes:
-        column = diagonalised(hamiltonian, [acb(0, w)], lambda x: acb(1), absolute).columns
-        v, u = column
-        d = acb(0)
-        for i in range(n):
-            d += v[i] * u[n + i] - v[n + i] * u[i]
+        d = pairing(*diagonalised(hamiltonian, [acb(0, w)], lambda x: acb(1), absolute).columns)
         if not (d.imag > 0 or d.imag < 0):
             raise NotVerified("the sign of the energy of an oscillation is not told by its enclosure")
         result.append(w if d.imag < 0 else -w)

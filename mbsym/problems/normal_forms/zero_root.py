@@ -29,7 +29,7 @@ from flint import acb, acb_poly, arb, ctx
 
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, faddeev, inverted
 from mbsym.algebra.truncated import Space, Truncated, bracket, flow
-from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, absolute, diagonalised, matrix_of
+from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, absolute, diagonalised, hessian, matrix_of, pairing
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why, defects
 from mbsym.problems.normal_forms.twist import NotVerified, signed
 
@@ -57,14 +57,6 @@ from mbsym.problems.normal_forms.twist import NotVerified, signed
 
 #: chi of a product with lambda.(a - b) = 0 that does not stay; None where it stays.
 Solves = Callable[[tuple[int, ...], acb], "tuple[tuple[int, ...], acb] | None"]
-
-
-def pairing(a: Sequence[acb], b: Sequence[acb]) -> acb:
-    """[a, b]."""
-    n, total = len(a) // 2, acb(0)
-    for i in range(n):
-        total += a[i] * b[n + i] - a[n + i] * b[i]
-    return total
 
 
 def chain(hamiltonian: Truncated, root: acb) -> tuple[list[acb], list[acb]]:
@@ -263,8 +255,8 @@ def splitting(whole: Truncated, place: int, scalars: Scalars) -> tuple[Truncated
     space = Space(1, source.order, source.zero, source.one)
     others = [k for k in range(m) if k != place]
     slopes = [whole.derivative(k) for k in others]
-    unit = [tuple(int(j == k) for j in range(m)) for k in range(m)]
-    rest = [[slope[unit[k]] for k in others] for slope in slopes]
+    second = hessian(whole)
+    rest = [[second[i][k] for k in others] for i in others]
     back = inverted(rest, scalars.inverse, source.zero, source.one)
     x = [space.nothing] * m
     x[place] = space.variable(0)

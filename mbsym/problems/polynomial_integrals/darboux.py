@@ -84,12 +84,7 @@ def is_regular_on(field: PolynomialField, f: Any, conditions: Sequence[Any] = ()
         return False
     bottom = field.denominator
     for condition in conditions:
-        place = next((k for k in range(len(field.parameters)) if _solvable(condition, k)), None)
-        if place is not None:
-            slope = condition.derivative(place)
-            images = list(field.context.gens())
-            images[place] = -(condition - slope * images[place]) / slope.leading_coefficient()
-            bottom, f = (p.compose(*images, ctx=field.context) for p in (bottom, f))
+        bottom, f = put_in(field, condition, (bottom, f))
     if bottom == 0:
         return False
     if not any(bottom.degrees()[k] for k in field.places):
@@ -97,8 +92,16 @@ def is_regular_on(field: PolynomialField, f: Any, conditions: Sequence[Any] = ()
     return any(_meets(f, bottom, images, scale) for images, scale in _curves(field))
 
 
-def _solvable(condition: Any, place: int) -> bool:
-    return bool(condition.degrees()[place] == 1 and condition.derivative(place).is_constant())
+def put_in(field: PolynomialField, condition: Any, formulas: Sequence[Any]) -> list[Any]:
+    """The formulas where the condition vanishes, if that is linear in a parameter; else as they are."""
+    degrees = condition.degrees()
+    for k in range(len(field.parameters)):
+        slope = condition.derivative(k)
+        if degrees[k] == 1 and slope.is_constant():
+            images = list(field.context.gens())
+            images[k] = -(condition - slope * images[k]) / slope.leading_coefficient()
+            return [x.compose(*images, ctx=field.context) for x in formulas]
+    return list(formulas)
 
 
 def _meets(f: Any, bottom: Any, images: Sequence[Any], scale: Any) -> bool:

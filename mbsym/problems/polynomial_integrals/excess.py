@@ -16,6 +16,7 @@ from flint import fmpq, fmpq_mat, fmpq_poly, nmod, nmod_mat, nmod_poly
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.terms import fraction_modulo
 from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.levels import (
     Level,
@@ -164,12 +165,8 @@ def interpolated(values: Sequence[int], shift: int, prime: int) -> nmod_poly:
 
 def rational(value: int, prime: int) -> Fraction | None:
     """a/b = value modulo the prime with |a|, b < sqrt(prime/2), if there is such a fraction (it is the only one)."""
-    most = isqrt(prime // 2)
-    a, b, s, t = prime, value % prime, 0, 1
-    while b > most:
-        quotient = a // b
-        a, b, s, t = b, a - quotient * b, t, s - quotient * t
-    return Fraction(b, t) if 0 < abs(t) <= most else None
+    parts = fraction_modulo(value % prime, prime, isqrt(prime // 2))
+    return None if parts is None else Fraction(*parts)
 
 
 def roots(p: Any) -> list[tuple[int, int]]:

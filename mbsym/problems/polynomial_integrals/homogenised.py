@@ -61,9 +61,8 @@ def cases_of(
             "special parameters are looked for where there is one unit vector or angle at most, no root, and where no "
             "constraint ties positions"
         )
-    name = larger.field.variables[-1]
     special = cases(larger, positive, budget)
-    down = _Down(name)
+    down = _Down(larger.field.variables[-1])
     return replace(special, usual=usual, cases=tuple(down.case(case) for case in special.cases))
 
 

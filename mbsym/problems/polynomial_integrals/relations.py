@@ -19,7 +19,7 @@ from flint import fmpq_mpoly_ctx
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.terms import with_quotient
-from mbsym.problems.polynomial_integrals.darboux import is_regular_on
+from mbsym.problems.polynomial_integrals.darboux import is_regular_on, put_in
 from mbsym.problems.polynomial_integrals.modular import coefficients, primitive
 from mbsym.problems.polynomial_integrals.result import Relation, Relations
 
@@ -298,14 +298,7 @@ def divides(field: PolynomialField, f: Any, conditions: Sequence[Any]) -> bool:
     """Whether f, linear, divides its derivative where the conditions hold: put in one by one, then divided by."""
     rate = field.derivative(f)
     for p in conditions:
-        degrees = p.degrees()
-        for k in range(len(field.parameters)):
-            slope = p.derivative(k)
-            if degrees[k] == 1 and slope.is_constant():
-                images = list(field.context.gens())
-                images[k] = -(p - slope * images[k]) / slope.leading_coefficient()
-                rate, f = (x.compose(*images, ctx=field.context) for x in (rate, f))
-                break
+        rate, f = put_in(field, p, (rate, f))
     if f == 0:
         return False
     place = next(k for k in field.places if f.degrees()[k])

@@ -34,8 +34,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from flint import fmpq_poly
-
 from mbsym.algebra.failures import Constrained
 from mbsym.algebra.krawczyk import certified
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, Solutions, solve
@@ -43,9 +41,8 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Counted, Message, joined
 from mbsym.mechanics.charts import Chart, charts, joints, with_cyclic_last_angles
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.kinematics import over_ring
 from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
-from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System, velocity_name
 from mbsym.problems.relative_equilibria.conditions import Case, Polynomials, cases
 from mbsym.problems.relative_equilibria.listing import (
@@ -66,7 +63,8 @@ from mbsym.problems.relative_equilibria.place import (
     PRECISION,
     Place,
     Unknowns,
-    angle_of,
+    at_zero,
+    ball_at,
     candidate_at,
     described_place,
     exact_rates,
@@ -307,7 +305,7 @@ def _constraints(first: Rest) -> Constraints:
     from mbsym.problems.constraints import constraints  # most systems have none
 
     plain = first.system.without_speeds
-    return constraints(Scene(plain, first.ring, ring_environment(plain, first.ring), first.ring))
+    return constraints(over_ring(plain, first.ring))
 
 
 def searches_of(
@@ -576,17 +574,8 @@ class _ChartSearch(SearchInBoxes):
     def _place(self, table: Unknowns, point: AlgebraicPoint) -> Place:
         ring = self.ring
         exact = dict(zip(table.indices, point.values, strict=True))
-        balls = {}
-        for name in self.occurring:
-            if ring.has("sine", name) and ring.index("sine", name) in exact:
-                s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
-                balls[name] = angle_of(s, c, ring.angles[name])
-            else:
-                balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
-        for name in self.free:  # any value does; 0 is one
-            exact |= {ring.index("coordinate", name): fmpq_poly([0])}
-            if name in ring.angles:
-                exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
+        balls = {name: ball_at(ring, name, exact, point) for name in self.occurring}
+        exact |= at_zero(ring, self.free)  # any value does; 0 is one
         return Place(self.rest, balls, exact | exact_rates(self.rest), point.modulus, point.enclosure)
 
     def _add_free_point(self) -> None:

@@ -26,7 +26,7 @@ from mbsym.algebra.polynomial_systems import AlgebraicPoint, Limits, context, so
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.charts import Chart, Joint, moment_components, rows
 from mbsym.mechanics.rest import Rest
-from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, exact_rates
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, at_zero, ball_at, exact_rates
 
 # Direction cosines as unknowns of a rest, in place of the sines and cosines of three angles.
 #
@@ -345,18 +345,13 @@ class _System:
             for item in chosen:
                 exact |= item.exact
                 balls |= item.balls
-            for name in (x for x in rest.constant if x not in balls):
-                if name not in names:  # any value does; 0 is one
-                    exact |= {ring.index("coordinate", name): fmpq_poly([0])}
-                    if name in ring.angles:
-                        exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
-                elif ring.has("sine", name) and ring.index("sine", name) in exact:
-                    s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
-                    balls[name] = angle_of(s, c, ring.angles[name])
-                elif ring.index("coordinate", name) in exact:
-                    balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
-                else:
-                    return None
+            free = [name for name in rest.constant if name not in balls and name not in names]
+            exact |= at_zero(ring, free)  # any value does; 0 is one
+            try:
+                left = [name for name in rest.constant if name not in balls and name in names]
+                balls |= {name: ball_at(ring, name, exact, point) for name in left}
+            except KeyError:
+                return None
             places.append(Place(rest, balls, exact | exact_rates(rest), point.modulus, point.enclosure))
         return places
 

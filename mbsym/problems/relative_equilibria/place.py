@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import permutations
@@ -282,6 +282,24 @@ class Unknowns:
         return ("-" if first[0] == "-" else "") + first[1] + "".join(f" {sign} {term}" for sign, term in others)
 
 
+def at_zero(ring: Ring, names: Iterable[str]) -> dict[int, Any]:
+    """Coordinates at 0, with their sines and cosines, by their generators."""
+    exact: dict[int, Any] = {}
+    for name in names:
+        exact[ring.index("coordinate", name)] = fmpq_poly([0])
+        if name in ring.angles:
+            exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
+    return exact
+
+
+def ball_at(ring: Ring, name: str, exact: Mapping[int, Any], point: AlgebraicPoint) -> arb:
+    """A coordinate that is known exactly, or whose sine and cosine are.  Raises KeyError where neither is."""
+    if ring.has("sine", name) and ring.index("sine", name) in exact:
+        s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
+        return angle_of(s, c, ring.angles[name])
+    return point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
+
+
 # Places that may be equilibria without being isolated roots: zero, and where the springs in coordinates are at rest.
 #
 # A root at which the Jacobian is singular has no box that proves it.  There the coordinates are known exactly, rational
@@ -310,13 +328,7 @@ class Candidate:
     def place(self, at_rest: Rest, rates: Mapping[int, Any]) -> Place:
         """With all other coordinates at 0."""
         ring, balls = self.ring, {}
-        exact: dict[int, Any] = {}
-        for name in at_rest.constant:
-            if name in self.forms:
-                continue
-            exact[ring.index("coordinate", name)] = fmpq_poly([0])
-            if name in ring.angles:
-                exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
+        exact = at_zero(ring, [name for name in at_rest.constant if name not in self.forms])
         for k, value in self.images.items():
             if value.is_constant():
                 exact[k] = fmpq_poly([value.leading_coefficient() if value else 0])

@@ -353,29 +353,28 @@ def _positive_root(tower: Tower, square: Element) -> Element:
 
 
 def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
-    tower = there.tower
-    top = _but_powers(tower, demand)
-    condition = there.told(tower.made(top / top.factor()[0], tower.context.constant(1)))
     return NoClosedForm(
         "in the order [[order]] of [[small]] secular terms remain unless [[condition]] = 0: "
         "amplitudes that square roots do not express are not followed",
         order=demand.order,
         small=there.small,
-        condition=condition,
+        condition=_condition(there, _but_powers(there.tower, demand)),
     )
 
 
 def _other_amplitude(there: Equations, demand: Demand) -> NotPeriodic:
-    tower = there.tower
-    top = _but_powers(tower, demand)
-    condition = there.told(tower.made(top / top.factor()[0], tower.context.constant(1)))
     return NotPeriodic(
         "with this amplitude secular terms remain in the order [[order]] of [[small]]: the amplitude "
         "has to fulfil [[condition]] = 0",
         order=demand.order,
         small=there.small,
-        condition=condition,
+        condition=_condition(there, _but_powers(there.tower, demand)),
     )
+
+
+def _condition(there: Equations, top: Any) -> Any:
+    """A polynomial as it is told, without a number for a factor."""
+    return there.told(there.tower.made(top / top.factor()[0], there.tower.context.constant(1)))
 
 
 def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
@@ -390,7 +389,7 @@ def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
     where = Message("in the order [[order]] of [[small]] secular terms remain", order=order, small=there.small)
     if condition.is_constant():
         return NotPeriodic("[[none]]: [[where]] for every real amplitude", none=none, where=where)
-    formula = there.told(tower.made(condition / condition.factor()[0], tower.context.constant(1)))
+    formula = _condition(there, condition)
     degrees = zip(tower.parameters, condition.degrees()[MOST_ROOTS:], strict=True)
     if any(degree > 0 and name.startswith("#") for name, degree in degrees):
         return NoClosedForm(

@@ -219,6 +219,14 @@ Fractional = tuple[Polynomial, tuple[tuple[Polynomial, int], ...]]
 MOST_DEGREE = 8
 
 
+def in_declared(scene: Scene, ring: Ring, index: int) -> tuple[int, Polynomial]:
+    """Where a generator of a ring of parameters stands in the whole ring, and what it is in declared ones."""
+    g = ring.generators[index]
+    named = g.kind == "parameter" and any(g.name == item.name for item in scene.system.notation)
+    place = ring.indices[index] if isinstance(ring, ParameterRing) else index
+    return place, definition_in_parameters(scene, g.name) if named else scene.ring.context.gen(place)
+
+
 class AlgebraicPoint:
     """``put`` makes of a polynomial a fraction (numerator, ((factor, exponent), ...)) in generators with ``images``.
 
@@ -276,15 +284,10 @@ def _point(
                 whole.index("cosine", parameter.name): cosine,
             }
     dependent = determined(scene, [(name, x.polynomial) for name, x in equilibrium.solved if name not in values])
-    notation = {item.name for item in scene.system.notation}
-    symbols: dict[int, Polynomial] = {}
+    places: dict[int, Polynomial] = {}
     for index in occurring(x for matrix in matrices for row in matrix for x in row):
-        g = ring.generators[index]
-        named = g.kind == "parameter" and g.name in notation
-        place = ring.indices[index] if isinstance(ring, ParameterRing) else index
-        symbol = definition_in_parameters(scene, g.name) if named else whole.context.gen(place)
-        symbols[index] = whole.substitute(whole.substitute(symbol, dependent), values_by_index)
-    places = {ring.indices[k] if isinstance(ring, ParameterRing) else k: x for k, x in symbols.items()}
+        place, symbol = in_declared(scene, ring, index)
+        places[place] = whole.substitute(whole.substitute(symbol, dependent), values_by_index)
 
     def put(p: Polynomial) -> Fractional:
         lifted = ring.lift(p) if isinstance(ring, ParameterRing) else p

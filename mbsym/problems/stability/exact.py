@@ -183,9 +183,9 @@ def on_the_motion(system: LinearSystem, verdict: Verdict, zeros: int) -> Verdict
 
 def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     """What holds of disturbances that the matrices are about."""
-    m, d, g, k, n = matrices = [evaluated(matrix, at) for matrix in system.matrices]
+    _, d, _, _, n = matrices = [evaluated(matrix, at) for matrix in system.matrices]
     try:
-        a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
+        a = state_at(system, at, matrices)
     except ZeroDivisionError:
         return PointVerdict(undecided(Because.MASS_SINGULAR), None, None)
     polynomial = a.charpoly()
@@ -217,7 +217,7 @@ def _of_linear_equations(system: LinearSystem, at: ExactPoint, first_verdict: Ve
     if not is_open(first_verdict) and Flaw.CYCLIC not in first_verdict.flawed:
         return exactly(first_verdict)
     m, d, g, k, n = (evaluated(matrix, at) for matrix in system.matrices)
-    a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
+    a = state_at(system, at, (m, d, g, k, n))
     if not is_open(first_verdict):
         return exactly(first_verdict, Ground.IDLE not in first_verdict.laid and is_calm(a))
     if system.leaf and a.charpoly().coeffs()[0] == 0:  # what changes the relations acts like a constant force
@@ -403,6 +403,12 @@ class RationalPoint:
 
     def settled(self, entry: Polynomial) -> Polynomial:
         return entry.context().constant(self.value(entry))
+
+
+def state_at(system: LinearSystem, at: ExactPoint, matrices: Sequence[Numbers] = ()) -> Numbers:
+    """A of x' = A x there, by its ``matrices`` if they are known.  Raises ZeroDivisionError where M is singular."""
+    m, d, g, k, n = matrices or [evaluated(matrix, at) for matrix in system.matrices]
+    return state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
 
 
 def evaluated(matrix: Matrix, at: ExactPoint) -> Numbers:

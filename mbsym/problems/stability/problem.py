@@ -33,10 +33,9 @@ from mbsym.problems.displacements import Basis, Displacements
 from mbsym.problems.displacements import basis as basis_of
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
-from mbsym.problems.stability.constant import algebraic_point
+from mbsym.problems.stability.constant import algebraic_point, in_declared
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
@@ -775,16 +774,7 @@ def _point(
     environment = {name: numbers.number(value) for name, value in values.items() if isinstance(value, Fraction)}
     carry = Carrier(scene.ring, numbers, environment)
     used = occurring(x for matrix in rows for row in matrix for x in row)
-    notation = {item.name for item in scene.system.notation}
-    point = {}
     try:
-        for index in used:
-            g = ring.generators[index]
-            named = g.kind == "parameter" and g.name in notation
-            whole = ring.indices[index] if isinstance(ring, ParameterRing) else index
-            symbol = definition_in_parameters(scene, g.name) if named else scene.ring.context.gen(whole)
-            exact = carry(symbol)
-            point[index] = rationals.fraction(exact)
+        return {index: rationals.fraction(carry(in_declared(scene, ring, index)[1])) for index in used}
     except NOT_THERE:
         return None
-    return point

@@ -141,17 +141,10 @@ def _pages(stem: str, items: Sequence[str], size: int, system: System) -> Iterat
 
 def coordinate_labels(system: System, between: str = " ") -> tuple[dict[str, str], dict[str, str]]:
     """Coordinates and velocities as mathematical text in the user's names, ``between`` them and their units."""
-    names = LatexNames(["t", *system.coordinates])
-    # matplotlib knows no \mathtt{a\_b}; plain letters are as clear.
-    plain = {name: "$\\mathrm{" + name.replace("_", r"\_") + "}$" for name in system.coordinates}
     positions, velocities = {}, {}
-    for name in system.coordinates:
-        symbol = names[name]
-        odd = "mathtt" in symbol.stem
-        positions[name] = plain[name] if odd else f"${symbol}$"
-        velocities[name] = f"d{plain[name]}/d$t$" if odd else f"${symbol.accented('dot')}$"
-        positions[name] += labelled("", unit_of(system, name)).replace(" ", between, 1)
-        velocities[name] += labelled("", system.units.rate_of(name)).replace(" ", between, 1)
+    for name, (position, velocity) in _labels(system.coordinates).items():
+        positions[name] = position + labelled("", unit_of(system, name)).replace(" ", between, 1)
+        velocities[name] = velocity + labelled("", system.units.rate_of(name)).replace(" ", between, 1)
     return positions, velocities
 
 
@@ -169,10 +162,7 @@ def _histories(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]
                 _over_time(axis, drawn, place[name] + side * len(place))
                 _label(axis, label)
                 axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
-        for axis in axes[-1]:
-            axis.set_xlabel(labelled("$t$", time_unit(system)))
-            _span(axis, _longest(drawn))
-        yield file, _page_of(drawn, axes.flat[0], figure)
+        yield file, _ended(figure, axes, drawn)
 
 
 def _variables(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
@@ -191,10 +181,15 @@ def _variables(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]
             axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
         for axis in axes.T.ravel()[len(shown) :]:
             axis.set_visible(False)
-        for axis in axes[-1]:
-            axis.set_xlabel(labelled("$t$", time_unit(system)))
-            _span(axis, _longest(drawn))
-        yield file, _page_of(drawn, axes.flat[0], figure)
+        yield file, _ended(figure, axes, drawn)
+
+
+def _ended(figure: Figure, axes: Any, drawn: Sequence[Curve]) -> Figure:
+    """A page of histories, with the time below the last row."""
+    for axis in axes[-1]:
+        axis.set_xlabel(labelled("$t$", time_unit(drawn[0].trajectory.system)))
+        _span(axis, _longest(drawn))
+    return _page_of(drawn, axes.flat[0], figure)
 
 
 def _labels(states: Sequence[str]) -> dict[str, tuple[str, str]]:
@@ -203,7 +198,7 @@ def _labels(states: Sequence[str]) -> dict[str, tuple[str, str]]:
     labels = {}
     for name in states:
         symbol = names[name]
-        plain = "$\\mathrm{" + name.replace("_", r"\_") + "}$"
+        plain = "$\\mathrm{" + name.replace("_", r"\_") + "}$"  # matplotlib knows no \mathtt{a\_b}
         odd = "mathtt" in symbol.stem
         labels[name] = (plain, f"d{plain}/d$t$") if odd else (f"${symbol}$", f"${symbol.accented('dot')}$")
     return labels

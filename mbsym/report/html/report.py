@@ -14,7 +14,7 @@ from markupsafe import Markup, escape
 from mbsym import __version__
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import text
-from mbsym.formulas.mathml import mathml_names, spelled_name
+from mbsym.formulas.mathml import MathNames, spelled_name
 from mbsym.model.system import System
 from mbsym.problems import NUMBERS
 from mbsym.report.code.interconnection import Interconnection, Joint, Kind, Node, interconnection
@@ -58,7 +58,7 @@ def context(
     ``spelled``: formulas carry what other programs read.
     """
     system = analysis.system
-    names = mathml_names(analysis.ring)
+    names = MathNames.of(analysis.ring)
     about = results(analysis, problems)
     counted = [about.by_problem[number] for number in COUNTED if number in about.by_problem]
     long = withheld([*counted, *about.forms.forms.results], PAPER)
@@ -85,7 +85,7 @@ def context(
 def title_in(analysis: Analysis, part: int | str) -> Markup:
     """The title of a problem, by its number, or a word of ours, in the language of the report."""
     language = Language(analysis.language or analysis.system.language)
-    writer = Writer(mathml_names(analysis.ring), language)
+    writer = Writer(MathNames.of(analysis.ring), language)
     if isinstance(part, str):
         return writer.said(Said(part))
     return writer.said(contents(results(analysis, (part,)), writer.document)[part].title)

@@ -17,7 +17,6 @@ from mbsym.formulas.mathml import (
     MathNames,
     bracketed,
     letter,
-    mathml_names,
     mathml_pieces,
     mi,
     mn,
@@ -109,183 +108,118 @@ class Writer:
             written = written.replace(mi(chr(_FIRST + k)), shown)
         return formulas.math(written)
 
-    @singledispatchmethod
     def inline(self, value: Any) -> Markup:
         """What stands in a line."""
+        match value:
+            case Said() | Message():
+                return self.said(value)
+            case content.Under():
+                return Markup('<span class="under">{}</span>').format(self._joined(value.parts))
+            case str():
+                return escape(self.language.say(value) if isinstance(value, StrEnum) else value)
+            case content.Strong():
+                key = Markup(' id="{}"').format(value.key) if value.key else ""
+                grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
+                return Markup("<strong{}{}>{}</strong>").format(key, grade, self.inline(value.text))
+            case content.Graded():
+                return Markup('<span class="{}">{}</span>').format(value.grade, self.inline(value.text))
+            case content.Link():
+                return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+            case content.Numbered():
+                return Markup('<a class="there" href="#{}">\u00a0\u2193</a>').format(_anchor(value.key))
+            case content.Phrase():
+                *parts, last = value.parts or ("",)
+                if not isinstance(last, content.Numbered):
+                    return self._joined(value.parts)
+                before, tag, piece = self._joined(parts).rpartition("<math>")  # no line ends in front of the link
+                together = Markup('<span class="together">{}{}</span>').format(Markup(tag + piece), self.inline(last))
+                return Markup(before) + together
+            case content.Relation():
+                # In one piece where it is short; a line ends between the pieces of a long one.
+                if sum(formulas.extent(x) for x in value.parts if isinstance(x, Formula)) <= UNBROKEN:
+                    return formulas.math(self.math(value))
+                return Markup(" ").join(map(formulas.math, self._relation_pieces(value.parts)))
+            case content.Listed():
+                # In one piece where it is short, or in brackets; a line ends behind the commas of a long one.
+                if value.braces or value.brackets or len(value.items) <= SIDE_BY_SIDE:
+                    return formulas.math(self.math(value))
+                *others, end = map(self.math, value.items)
+                return Markup(" ").join(map(formulas.math, (*(item + _SEPARATOR for item in others), end)))
+            case content.Elsewhere():
+                return self.inline(value.link)
+            case content.Emphasis():
+                return Markup("<i>{}</i>").format(value.text)
+            case content.Verbatim():
+                return Markup("<code>{}</code>").format(value.text)
+            case content.Unit():
+                return escape(labelled("", value.text).strip())
+            case content.Citation():
+                return escape(value.text)
         return formulas.math(self.math(value))
-
-    @inline.register
-    def _(self, value: str) -> Markup:
-        return escape(self.language.say(value) if isinstance(value, StrEnum) else value)
-
-    @inline.register(Said)
-    @inline.register(Message)
-    def _(self, value: Said) -> Markup:
-        return self.said(value)
-
-    @inline.register
-    def _(self, value: content.Strong) -> Markup:
-        key = Markup(' id="{}"').format(value.key) if value.key else ""
-        grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
-        return Markup("<strong{}{}>{}</strong>").format(key, grade, self.inline(value.text))
-
-    @inline.register
-    def _(self, value: content.Graded) -> Markup:
-        return Markup('<span class="{}">{}</span>').format(value.grade, self.inline(value.text))
-
-    @inline.register
-    def _(self, value: content.Link) -> Markup:
-        return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
-
-    @inline.register
-    def _(self, value: content.Under) -> Markup:
-        return Markup('<span class="under">{}</span>').format(self._joined(value.parts))
-
-    @inline.register
-    def _(self, value: content.Numbered) -> Markup:
-        return Markup('<a class="there" href="#{}">\u00a0\u2193</a>').format(_anchor(value.key))
-
-    @inline.register
-    def _(self, value: content.Phrase) -> Markup:
-        *parts, last = value.parts or ("",)
-        if not isinstance(last, content.Numbered):
-            return self._joined(value.parts)
-        before, tag, piece = self._joined(parts).rpartition("<math>")  # no line ends in front of the link
-        together = Markup('<span class="together">{}{}</span>').format(Markup(tag + piece), self.inline(last))
-        return Markup(before) + together
-
-    @inline.register
-    def _(self, value: content.Relation) -> Markup:
-        """In one piece where it is short; a line ends between the pieces of a long one."""
-        if sum(formulas.extent(x) for x in value.parts if isinstance(x, Formula)) <= UNBROKEN:
-            return formulas.math(self.math(value))
-        return Markup(" ").join(map(formulas.math, self._relation_pieces(value.parts)))
-
-    @inline.register
-    def _(self, value: content.Listed) -> Markup:
-        """In one piece where it is short, or in brackets; a line ends behind the commas of a long one."""
-        if value.braces or value.brackets or len(value.items) <= SIDE_BY_SIDE:
-            return formulas.math(self.math(value))
-        *before, last = map(self.math, value.items)
-        return Markup(" ").join(map(formulas.math, (*(item + _SEPARATOR for item in before), last)))
-
-    @inline.register
-    def _(self, value: content.Elsewhere) -> Markup:
-        return self.inline(value.link)
-
-    @inline.register
-    def _(self, value: content.Emphasis) -> Markup:
-        return Markup("<i>{}</i>").format(value.text)
-
-    @inline.register
-    def _(self, value: content.Verbatim) -> Markup:
-        return Markup("<code>{}</code>").format(value.text)
-
-    @inline.register
-    def _(self, value: content.Unit) -> Markup:
-        return escape(labelled("", value.text).strip())
-
-    @inline.register
-    def _(self, value: content.Citation) -> Markup:
-        return escape(value.text)
 
     # --- mathematics ---
 
-    @singledispatchmethod
     def math(self, value: Any) -> str:
         """A value of mathematics as elements of MathML."""
+        match value:
+            case int():
+                return mn(value)
+            case str():
+                return mo(RELATIONS.get(value, value))
+            case Formula() if self._is_withheld(value):
+                return self._not_printed(value)
+            case Formula():
+                return str(formulas.inline(value, self.spelled))
+            case content.Name():
+                symbol = (self.names if value.ring is None else MathNames.of(value.ring))[value.name]
+                written = str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
+                return written + bracketed(mn(value.at)) if value.at else written
+            case content.Symbol():
+                letter = _SCRIPT[value.letter] if value.look == "script" else value.letter
+                above = "\u00af" if value.look == "bar" else _DOTS[value.dots]
+                return str(formulas.symbol(letter, value.lower, value.upper, above))
+            case content.Entry():
+                whole = value.whole
+                if isinstance(value.index, content.Name):
+                    return f"<msub>{self.math(whole)}{self.math(value.index)}</msub>"
+                if whole.lower:
+                    return str(formulas.indexed(bracketed(self.math(whole)), value.index))
+                return self.math(replace(whole, lower=value.index))
+            case content.Notation() | content.Number():
+                return notation(value.tex)
+            case content.Rows():
+                return table([list(map(self.math, row)) for row in value.rows])
+            case content.Raised():
+                return power(self.math(value.of), bracketed(mn(value.index)))
+            case content.Power():
+                return power(self.math(value.base), mn(value.exponent))
+            case content.Text():
+                return mtext(self._joined(value.parts).unescape())
+            case content.Readable():
+                if formulas.is_readable(value.value):
+                    return self.math(value.value)
+                return self._length(value.value, value.kept)
+            case content.Listed():
+                items = [self.math(x) for x in value.items]
+                if value.braces:
+                    return bracketed(_COMMA.join(items), "{}")
+                return bracketed_row(items) if value.brackets else _COMMA.join(items)
+            case content.Relation():
+                return "".join(map(self.math, value.parts))
+            case content.Polynomial():
+                written = "".join(self._pieces(value))
+                return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
+            case content.SpeedForm():
+                return str(speed_form(value.form, self.names, value.body))
+            case content.Tensor():
+                return table([[self.math(x) for x in line] for line in value.rows])
+            case content.Points():
+                text = [point_of_table(x, y, self.names) for x, y in shown_points(value.points)]
+                half = len(text) // 2
+                return _COMMA.join(
+                    text if len(text) == len(value.points) else [*text[:half], mo("\u2026"), *text[half:]]
+                )
         return str(expression(value, self.names))
-
-    @math.register
-    def _(self, value: int) -> str:
-        return mn(value)
-
-    @math.register
-    def _(self, value: str) -> str:
-        return mo(RELATIONS.get(value, value))
-
-    @math.register
-    def _(self, value: Formula) -> str:
-        return self._not_printed(value) if self._is_withheld(value) else str(formulas.inline(value, self.spelled))
-
-    @math.register
-    def _(self, value: content.Name) -> str:
-        symbol = (self.names if value.ring is None else mathml_names(value.ring))[value.name]
-        written = str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
-        return written + bracketed(mn(value.at)) if value.at else written
-
-    @math.register
-    def _(self, value: content.Symbol) -> str:
-        letter = _SCRIPT[value.letter] if value.look == "script" else value.letter
-        above = "\u00af" if value.look == "bar" else _DOTS[value.dots]
-        return str(formulas.symbol(letter, value.lower, value.upper, above))
-
-    @math.register
-    def _(self, value: content.Entry) -> str:
-        whole = value.whole
-        if isinstance(value.index, content.Name):
-            return f"<msub>{self.math(whole)}{self.math(value.index)}</msub>"
-        if whole.lower:
-            return str(formulas.indexed(bracketed(self.math(whole)), value.index))
-        return self.math(replace(whole, lower=value.index))
-
-    @math.register
-    def _(self, value: content.Notation) -> str:
-        return notation(value.tex)
-
-    @math.register
-    def _(self, value: content.Number) -> str:
-        return notation(value.tex)
-
-    @math.register
-    def _(self, value: content.Rows) -> str:
-        return table([list(map(self.math, row)) for row in value.rows])
-
-    @math.register
-    def _(self, value: content.Raised) -> str:
-        return power(self.math(value.of), bracketed(mn(value.index)))
-
-    @math.register
-    def _(self, value: content.Power) -> str:
-        return power(self.math(value.base), mn(value.exponent))
-
-    @math.register
-    def _(self, value: content.Text) -> str:
-        return mtext(self._joined(value.parts).unescape())
-
-    @math.register
-    def _(self, value: content.Readable) -> str:
-        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
-
-    @math.register
-    def _(self, value: content.Listed) -> str:
-        items = [self.math(x) for x in value.items]
-        if value.braces:
-            return bracketed(_COMMA.join(items), "{}")
-        return bracketed_row(items) if value.brackets else _COMMA.join(items)
-
-    @math.register
-    def _(self, value: content.Relation) -> str:
-        return "".join(map(self.math, value.parts))
-
-    @math.register
-    def _(self, value: content.Polynomial) -> str:
-        written = "".join(self._pieces(value))
-        return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
-
-    @math.register
-    def _(self, value: content.SpeedForm) -> str:
-        return str(speed_form(value.form, self.names, value.body))
-
-    @math.register
-    def _(self, value: content.Tensor) -> str:
-        return table([[self.math(x) for x in line] for line in value.rows])
-
-    @math.register
-    def _(self, value: content.Points) -> str:
-        text = [point_of_table(x, y, self.names) for x, y in shown_points(value.points)]
-        half = len(text) // 2
-        return _COMMA.join(text if len(text) == len(value.points) else [*text[:half], mo("\u2026"), *text[half:]])
 
     # --- blocks ---
 
@@ -503,7 +437,7 @@ def _anchor(key: str) -> str:
 
 def told_passages(listing: Told[Any], passages: Iterable[Passage], say: Callable[[str], Markup] = escape) -> Markup:
     """A phrase, then the definitions that it introduces, for every passage."""
-    names = mathml_names(listing.ring)
+    names = MathNames.of(listing.ring)
     return Markup("").join(_passage(passage, names, say) for passage in passages)
 
 

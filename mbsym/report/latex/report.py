@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakKeyDictionary
 
 from mbsym import __version__
-from mbsym.formulas.latex import LatexNames, latex_names
+from mbsym.formulas.latex import LatexNames
 from mbsym.formulas.letters import letters
 from mbsym.formulas.tree import angles_or
 from mbsym.model.system import System
@@ -166,7 +166,7 @@ _PRINTED: WeakKeyDictionary[Analysis, Printed] = WeakKeyDictionary()
 def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filters, dict[str, Any]]:
     """The filters and the values for the results of some problems."""
     system, once = analysis.system, _PRINTED.setdefault(analysis, Printed())
-    names = latex_names(analysis.ring)
+    names = LatexNames.of(analysis.ring)
     tongue = Language(analysis.language or system.language)
     labels = Labels(prefix_of(system))
     known = results(analysis, problems, apart=form is Form.FRAGMENT)

@@ -14,7 +14,7 @@ from typing import Any
 from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol, latex_text
+from mbsym.formulas.latex import LatexNames, latex_matrix, latex_symbol, latex_text
 from mbsym.formulas.straight_line import Dialect, short_listing
 from mbsym.formulas.told import Told
 from mbsym.model.system import System
@@ -76,165 +76,100 @@ class Writer:
             return ", ".join(self._gap(x, inside) for x in value)
         return self.math(value) if inside and not isinstance(value, str) else self.inline(value)
 
-    @singledispatchmethod
     def inline(self, value: Any) -> str:
         """What stands in a line; mathematics between dollars."""
+        match value:
+            case Said() | Message():
+                return self.said(value)
+            case content.Under():
+                return f"\\hspace*{{1em}}{self.inline(content.Phrase(value.parts))}"
+            case str():
+                return _spaced(self.language.say(value) if isinstance(value, StrEnum) else value)
+            case content.Numbered():
+                return f"~\\eqref{{{self.labels.of(value.key)}}}"
+            case content.Phrase():
+                return self._joined(value.parts)
+            case content.Strong():
+                return f"\\textbf{{{self.inline(value.text)}}}"
+            case content.Graded():
+                return self.inline(content.Strong(value.text) if value.grade == "bad" else value.text)
+            case content.Link():
+                return self.inline(value.text)
+            case content.Elsewhere():
+                return self.inline(value.link)
+            case content.Emphasis():
+                return f"\\textit{{{escaped(value.text)}}}"
+            case content.Verbatim():
+                return f"\\texttt{{{escaped(value.text)}}}"
+            case content.Unit():
+                return f"${bracketed(value.text)}$"
+            case content.Citation():
+                return f"\\cite{{{value.key}}}" if self.form is Form.REPORT else escaped(value.text)
         return breakable(self.math(value))
-
-    @inline.register
-    def _(self, value: str) -> str:
-        return _spaced(self.language.say(value) if isinstance(value, StrEnum) else value)
-
-    @inline.register(Said)
-    @inline.register(Message)
-    def _(self, value: Said) -> str:
-        return self.said(value)
-
-    @inline.register
-    def _(self, value: content.Numbered) -> str:
-        return f"~\\eqref{{{self.labels.of(value.key)}}}"
-
-    @inline.register
-    def _(self, value: content.Phrase) -> str:
-        return self._joined(value.parts)
-
-    @inline.register
-    def _(self, value: content.Strong) -> str:
-        return f"\\textbf{{{self.inline(value.text)}}}"
-
-    @inline.register
-    def _(self, value: content.Graded) -> str:
-        return self.inline(content.Strong(value.text) if value.grade == "bad" else value.text)
-
-    @inline.register
-    def _(self, value: content.Link) -> str:
-        return self.inline(value.text)
-
-    @inline.register
-    def _(self, value: content.Under) -> str:
-        return f"\\hspace*{{1em}}{self.inline(content.Phrase(value.parts))}"
-
-    @inline.register
-    def _(self, value: content.Elsewhere) -> str:
-        return self.inline(value.link)
-
-    @inline.register
-    def _(self, value: content.Emphasis) -> str:
-        return f"\\textit{{{escaped(value.text)}}}"
-
-    @inline.register
-    def _(self, value: content.Verbatim) -> str:
-        return f"\\texttt{{{escaped(value.text)}}}"
-
-    @inline.register
-    def _(self, value: content.Unit) -> str:
-        return f"${bracketed(value.text)}$"
-
-    @inline.register
-    def _(self, value: content.Citation) -> str:
-        return f"\\cite{{{value.key}}}" if self.form is Form.REPORT else escaped(value.text)
 
     # --- mathematics ---
 
-    @singledispatchmethod
     def math(self, value: Any) -> str:
         """A value of mathematics, without dollars."""
+        match value:
+            case int():
+                return str(value)
+            case str():
+                return "\\penalty0 +" if value == "+" else RELATIONS.get(value, value)
+            case Formula():
+                if value.terms > formulas.LONGEST or id(value) in self.long:
+                    return f"\\text{{({self.said(not_printed(value))})}}"
+                return formulas.formula(value)
+            case content.Name():
+                symbol = (self.names if value.ring is None else LatexNames.of(value.ring))[value.name]
+                written = symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
+                return f"{written}({value.at})" if value.at else written
+            case content.Symbol():
+                stem = latex_symbol(value.letter)
+                accent = _DOTS[value.dots] or _LOOKS.get(value.look, "")
+                written = stem.accented(accent) if accent else str(stem)
+                lower = f"_{{{_index(value.lower)}}}" if value.lower else ""
+                return written + lower + (f"^{{{_index(value.upper)}}}" if value.upper else "")
+            case content.Entry():
+                whole = self.math(value.whole)
+                index = value.index if isinstance(value.index, str) else self.math(value.index)
+                return f"({whole})_{{{index}}}" if value.whole.lower else f"{whole}_{{{index}}}"
+            case content.Notation() | content.Number():
+                return value.tex
+            case content.Rows():
+                return latex_matrix([list(map(self.math, row)) for row in value.rows])
+            case content.Raised():
+                return f"{{{self.math(value.of)}}}^{{({value.index})}}"
+            case content.Power():
+                return f"{self.math(value.base)}^{{{value.exponent}}}"
+            case content.Text():
+                return f"\\text{{{self._joined(value.parts)}}}"
+            case content.Readable():
+                if formulas.is_readable(value.value):
+                    return self.math(value.value)
+                return self._length(value.value, value.kept)
+            case content.Listed():
+                # Of equations each may stand in a line of its own.
+                comma = ",\\, "
+                if any(isinstance(x, content.Relation) for x in value.items):
+                    comma = ",\\quad \\penalty0 "
+                elif value.brackets:
+                    comma = ",\\; \\allowbreak "
+                written = comma.join(map(self.math, value.items))
+                return f"({written})" if value.brackets else f"\\{{{written}\\}}" if value.braces else written
+            case content.Relation():
+                written = " ".join(map(self.math, value.parts))
+                return f"-{written[2:]}" if written.startswith("- ") else written
+            case content.Polynomial():
+                written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem, self._length)
+                return written if value.power == 1 else f"\\bigl[{written}\\bigr]^{{{value.power}}}"
+            case content.SpeedForm():
+                return speed_form(value.form, self.names, value.body)
+            case content.Tensor():
+                return formulas.tensor(value.rows, self.names, self.form.widest)
+            case content.Points():
+                return points(value.points, self.names)
         return expression(value, self.names)
-
-    @math.register
-    def _(self, value: int) -> str:
-        return str(value)
-
-    @math.register
-    def _(self, value: str) -> str:
-        return "\\penalty0 +" if value == "+" else RELATIONS.get(value, value)
-
-    @math.register
-    def _(self, value: Formula) -> str:
-        if value.terms > formulas.LONGEST or id(value) in self.long:
-            return f"\\text{{({self.said(not_printed(value))})}}"
-        return formulas.formula(value)
-
-    @math.register
-    def _(self, value: content.Name) -> str:
-        symbol = (self.names if value.ring is None else latex_names(value.ring))[value.name]
-        written = symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
-        return f"{written}({value.at})" if value.at else written
-
-    @math.register
-    def _(self, value: content.Symbol) -> str:
-        stem = latex_symbol(value.letter)
-        accent = _DOTS[value.dots] or _LOOKS.get(value.look, "")
-        written = stem.accented(accent) if accent else str(stem)
-        lower = f"_{{{_index(value.lower)}}}" if value.lower else ""
-        return written + lower + (f"^{{{_index(value.upper)}}}" if value.upper else "")
-
-    @math.register
-    def _(self, value: content.Entry) -> str:
-        whole = self.math(value.whole)
-        index = value.index if isinstance(value.index, str) else self.math(value.index)
-        return f"({whole})_{{{index}}}" if value.whole.lower else f"{whole}_{{{index}}}"
-
-    @math.register
-    def _(self, value: content.Notation) -> str:
-        return value.tex
-
-    @math.register
-    def _(self, value: content.Number) -> str:
-        return value.tex
-
-    @math.register
-    def _(self, value: content.Rows) -> str:
-        return latex_matrix([list(map(self.math, row)) for row in value.rows])
-
-    @math.register
-    def _(self, value: content.Raised) -> str:
-        return f"{{{self.math(value.of)}}}^{{({value.index})}}"
-
-    @math.register
-    def _(self, value: content.Power) -> str:
-        return f"{self.math(value.base)}^{{{value.exponent}}}"
-
-    @math.register
-    def _(self, value: content.Text) -> str:
-        return f"\\text{{{self._joined(value.parts)}}}"
-
-    @math.register
-    def _(self, value: content.Readable) -> str:
-        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
-
-    @math.register
-    def _(self, value: content.Listed) -> str:
-        # Of equations each may stand in a line of its own.
-        comma = ",\\, "
-        if any(isinstance(x, content.Relation) for x in value.items):
-            comma = ",\\quad \\penalty0 "
-        elif value.brackets:
-            comma = ",\\; \\allowbreak "
-        written = comma.join(map(self.math, value.items))
-        return f"({written})" if value.brackets else f"\\{{{written}\\}}" if value.braces else written
-
-    @math.register
-    def _(self, value: content.Relation) -> str:
-        written = " ".join(map(self.math, value.parts))
-        return f"-{written[2:]}" if written.startswith("- ") else written
-
-    @math.register
-    def _(self, value: content.Polynomial) -> str:
-        written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem, self._length)
-        return written if value.power == 1 else f"\\bigl[{written}\\bigr]^{{{value.power}}}"
-
-    @math.register
-    def _(self, value: content.SpeedForm) -> str:
-        return speed_form(value.form, self.names, value.body)
-
-    @math.register
-    def _(self, value: content.Tensor) -> str:
-        return formulas.tensor(value.rows, self.names, self.form.widest)
-
-    @math.register
-    def _(self, value: content.Points) -> str:
-        return points(value.points, self.names)
 
     # --- blocks ---
 
@@ -450,7 +385,7 @@ PARAGRAPH, CLOSING = "\\hangindent=1.2em \\hangafter=1 \\noindent ", "\\par\n"
 
 def paragraphs(listing: Told[Any], passages: Iterable[Passage], escaped: Callable[[str], str]) -> str:
     """Every passage as a paragraph, in one group."""
-    names = latex_names(listing.ring)
+    names = LatexNames.of(listing.ring)
     return OPENING + "".join(PARAGRAPH + _sentence(x, names, escaped) + CLOSING for x in passages) + "}"
 
 

@@ -35,7 +35,7 @@ MOST_FRAMES, MOST_NUMBERS = 2_400, 400_000
 
 @dataclass(frozen=True)
 class Motion:
-    """``coordinates`` and ``velocities`` by name, each (m,) like ``times``; ``stride`` samples of the run are a frame.
+    """``coordinates`` and ``velocities`` by name, each (m,) like ``times``.
 
     ``energy`` is T - U, ``kinetic`` T; ``drift`` is the relative change of what ``drift_of`` names.  ``doubts`` are why
     it may be wrong, ``sentences`` how it was computed.
@@ -48,7 +48,6 @@ class Motion:
     energy: Any
     drift: Any
     drift_of: str
-    stride: int
     doubts: tuple[str, ...]
     sentences: tuple[str, ...]
     units: tuple[tuple[str, str], ...] = ()
@@ -105,7 +104,6 @@ def motion_of(run: Simulation) -> Motion:
         energy=np.asarray(trajectory.energy[chosen], dtype=float),
         drift=np.asarray(trajectory.drift[chosen], dtype=float),
         drift_of=say(drift_of(run)),
-        stride=stride,
         doubts=(*map(say, doubts(run)), *(text for title, text in constrained if title == "warning")),
         sentences=(
             *map(say, run_sentences(run)),

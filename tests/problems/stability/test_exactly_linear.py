@@ -10,6 +10,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from plain_vectors import inverse
 from terminal import told
 
 import mbsym
@@ -24,19 +25,6 @@ def _times(a, b):
         [sum((x * y for x, y in zip(row, column, strict=True)), Fraction(0)) for column in zip(*b, strict=True)]
         for row in a
     ]
-
-
-def _inverse(a):
-    n = len(a)
-    rows = [[*map(Fraction, row), *(Fraction(int(i == j)) for j in range(n))] for i, row in enumerate(a)]
-    for k in range(n):
-        pivot = next(i for i in range(k, n) if rows[i][k])
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        rows[k] = [x / rows[k][k] for x in rows[k]]
-        for i in range(n):
-            if i != k:
-                rows[i] = [x - rows[i][k] * y for x, y in zip(rows[i], rows[k], strict=True)]
-    return [row[n:] for row in rows]
 
 
 def _joined(blocks):
@@ -100,7 +88,7 @@ def test_a_known_jordan_structure_is_what_the_verdict_says(seed):
             word = Word.STABLE
     A = _joined(blocks)
     S = _regular(source, len(A))
-    for matrix in (A, _times(_times(_inverse(S), A), S)):
+    for matrix in (A, _times(_times(inverse(S), A), S)):
         found = _given(A=matrix).stability
         assert found.numerical.word is word, (blocks, found.numerical)
         assert found.verdict.word is word, (blocks, found.verdict)  # without parameters both are the same
