@@ -68,6 +68,8 @@ def _decided(bare: System, listed: RelativeEquilibrium | EquilibriumFamily) -> V
     """The verdict there; where any value of some coordinates will do at 0 of them, and in samples elsewhere."""
     known = listed.verdict
     if isinstance(listed, EquilibriumFamily):
+        if known.because(Because.NOT_ENCLOSED):  # the constraints are singular there
+            return known
         return _decided_at(bare, listed.sample, listed.enclosures, known)
     free = () if bare.constraints or not listed.free else _telling(bare, listed.free)
     if not free:
@@ -110,13 +112,14 @@ def _decided_at(
     there = replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed)))
     analysis = Analysis(with_free_rates(there) if bare.constraints else there, ())
     try:
-        if any(map(known.because, _KNOWN_BETTER)) and bare.constraints:
-            stability = None if enclosed else analysis.stability
-            return known if stability is None else stability.numerical or stability.verdict
         judge = Judge(analysis)
-        if enclosed or any(map(known.because, _SINGULAR)):
-            return judge.decided(known, enclosed)
-        return judge({})  # problem 6 knows symmetries that the list does not, and other words
+        if not bare.constraints:  # problem 6 knows symmetries that the list does not, and other words
+            return judge.decided(known, enclosed) if enclosed else judge({})
+        better = any(map(known.because, _KNOWN_BETTER))
+        verdict = known if better else judge.decided(known, enclosed)
+        if enclosed or not verdict.word.open or any(map(known.because, _SINGULAR)):
+            return verdict
+        return analysis.stability.numerical or analysis.stability.verdict
     except (Failure, *NOT_THERE):
         return known
 
