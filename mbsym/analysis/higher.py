@@ -324,7 +324,9 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     at_rest = not expansion.base.turning and all(x.is_zero() for x in expansion.base.rates)
     if not at_rest or system.prescribed or any("t" in names(x) for x in expressions(system)):
         raise NotExpanded(
-            "under constraints only rests are expanded, of systems whose equations do not contain the time"
+            "under constraints only rests are expanded, of systems whose equations do not contain the time",
+            remedy="problem 6 judges steady motions in first approximation ('mbsym run'), 'mbsym orbit' finds periodic "
+            "ones",
         )
     if (
         not (about.holonomic or kept_by_velocities(analysis))

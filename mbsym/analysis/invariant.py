@@ -44,7 +44,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     from mbsym.problems.invariant_sets.branches import arena
     from mbsym.problems.invariant_sets.problem import invariant_sets
 
-    count = len(analysis.system.coordinates)
+    count = len(analysis.constraints.free if analysis.system.constraints else analysis.system.coordinates)
     if not analysis.system.speeds and count > MOST_ANGLES:
         raise NoClosedForm(
             "[[count]] coordinates: without speeds of their own, families of integrals of at most "

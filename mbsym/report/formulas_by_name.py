@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.algebra.factors import content, irreducible_factors
 from mbsym.algebra.failures import Failure, NoClosedForm
-from mbsym.algebra.matrices import added, cramer, determinant
+from mbsym.algebra.matrices import added, components, cramer, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.expressions.rates import ENDINGS, acceleration_name, without_velocity
@@ -41,7 +41,7 @@ LANGUAGES = ("text", "latex", "wolfram", "python")
 #: Wider matrices and columns are written entry by entry for people.
 WIDEST = 80
 
-#: Accelerations of more coordinates are left to programs: their formulas fill pages.
+#: Accelerations of more coordinates that the mass matrix couples are left to programs: their formulas fill pages.
 MOST_SOLVED = 4
 
 
@@ -112,14 +112,18 @@ def _coriolis(analysis: Analysis) -> Iterator[Line]:
 
 
 def _gravity(analysis: Analysis) -> Iterator[Line]:
-    """g = -dU/dq, U of the fields of gravity alone."""
-    if analysis.system.speeds:
-        raise NoClosedForm("the equations are in speeds: 'U' is what gravity gives")
+    """g = -dU/dq, in speeds -d(U')/du, U of the fields of gravity alone."""
     fields = tuple(load for load in analysis.system.loads if isinstance(load, UniformGravity | NewtonianGravity))
-    force_function = _with_loads(analysis, fields).energy.force_function
-    ring = force_function.ring
-    names = analysis.system.coordinates
-    yield Line("gravity", column(ring, [-ring.derivative(force_function.polynomial, name) for name in names]))
+    within = _with_loads(analysis, fields)
+    ring, potential, form = within.ring, within.energy.force_function.polynomial, within.form
+    if analysis.system.speeds:
+        rate = ring.reduce(
+            ring.dot([ring.derivative(potential, name) for name in form.rates], list(form.rates.values()))
+        )
+        slopes = [rate.derivative(u.index) for u in form.speeds]
+    else:
+        slopes = [ring.derivative(potential, name) for name in analysis.system.coordinates]
+    yield Line("gravity", column(ring, [ring.reduce(-x) for x in slopes]))
 
 
 def _with_loads(analysis: Analysis, loads: tuple[Load, ...]) -> Analysis:
@@ -155,15 +159,19 @@ def accelerations(analysis: Analysis) -> Column:
             "without multipliers the equations are longer than the budget of terms (--terms); 'equations' has them "
             "with multipliers, and model.py computes accelerations"
         )
-    n = len(short.forcing)
-    if n > MOST_SOLVED:
-        text = "accelerations of so many coordinates ([[count]]) fill pages; model.py computes them"
-        raise NoClosedForm(text, count=n)
     ring = analysis.ring
     rows = [[x.polynomial for x in row] for row in short.mass_matrix]
-    tops = cramer(ring, rows, [x.polynomial for x in short.forcing])
-    inverse = ring.reciprocal(determinant(ring, rows))
-    rates = [ring.reduce(ring.times(top, inverse)) for top in tops]
+    blocks = components(len(rows), lambda i, j: not (ring.vanishes(rows[i][j]) and ring.vanishes(rows[j][i])))
+    count = max(map(len, blocks), default=0)
+    if count > MOST_SOLVED:
+        text = "accelerations of so many coordinates ([[count]]) fill pages; model.py computes them"
+        raise NoClosedForm(text, count=count)
+    rates = [ring.zero] * len(rows)
+    for block in blocks:
+        own = [[rows[i][j] for j in block] for i in block]
+        inverse = ring.reciprocal(determinant(ring, own))
+        for i, top in zip(block, cramer(ring, own, [short.forcing[i].polynomial for i in block]), strict=True):
+            rates[i] = ring.reduce(ring.times(top, inverse))
     if solved is None:
         return column(ring, rates)
     images = dependent_velocities(analysis.form, solved)

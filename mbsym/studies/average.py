@@ -159,7 +159,7 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
         return Refusal(str(error))
     if isinstance(error, Unsound):
         return refused("it cannot be averaged", error)
-    return failed(error, "it cannot be averaged", True)
+    return failed(error, "it cannot be averaged")
 
 
 def as_json(context: Asked, request: Request, derived: Found) -> str:

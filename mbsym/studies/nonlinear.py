@@ -171,7 +171,7 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
     if isinstance(error, Unavailable) and request.vary is None:
         why = joined(filter(None, (error.reason, error.remedy)), "; ")
         return Refusal(Message("nothing decided: [[why]]", why=why))
-    return failed(error, "nothing decided", True) if request.vary is None else failed(error, "no values listed")
+    return failed(error, "nothing decided" if request.vary is None else "no values listed")
 
 
 STUDY = Study(

@@ -262,7 +262,7 @@ def as_json(context: Asked, request: Request, derived: Found) -> str:
 def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
         return refused("no periodic solution", error, Exit.BAD_INPUT)
-    return failed(error, "no expansion", True)
+    return failed(error, "no expansion")
 
 
 STUDY = Study(

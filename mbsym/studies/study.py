@@ -359,20 +359,19 @@ class Study(Generic[R, F]):
     rare: Collection[str] = ()
 
 
-def refused(before: str, error: Exception, code: Exit = Exit.FAILED, remedied: bool = False) -> Refusal:
-    """What could not be had, and why; ``remedied``: with what to try next."""
+def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:
+    """What could not be had, why, and what to try next."""
     from mbsym.algebra.failures import message_of
 
-    remedy = getattr(error, "remedy", "") if remedied else ""
-    why = joined(filter(None, (message_of(error), remedy)), "; ")
+    why = joined(filter(None, (message_of(error), getattr(error, "remedy", ""))), "; ")
     return Refusal(joined((Message(before), why), ": "), code)
 
 
-def failed(error: Exception, before: str, remedied: bool = False) -> Refusal | None:
+def failed(error: Exception, before: str) -> Refusal | None:
     """Of exact studies: what could not be derived, and why."""
     from mbsym.algebra.failures import Failure
 
-    return refused(before, error, remedied=remedied) if isinstance(error, Failure) else None
+    return refused(before, error) if isinstance(error, Failure) else None
 
 
 def no_program(error: Exception, context: Asked, request: object) -> Refusal | None:

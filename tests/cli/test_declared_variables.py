@@ -75,10 +75,24 @@ def test_what_knows_declared_variables_speaks_them(words: tuple[str, ...], table
     assert "psi" not in head
 
 
-def test_a_speed_that_is_no_state_alone_is_refused(tmp_path: Path) -> None:
-    """The initial velocities are those of angles: one speed besides is no state."""
-    result = called(SATELLITE, "--time", 10, "--vary", "p=0.01:0.02:3", "--out", tmp_path / "out", code=2)
-    assert "no motion begins with p = 0.01: no value for q" in result.stderr
+def test_with_another_speed_the_other_speeds_stay(tmp_path: Path) -> None:
+    """The initial velocities are those of angles: other speeds keep what they are by these."""
+    words = ("--time", 10, "--samples", 2, "-f", "csv", "--out")
+    called(SATELLITE, *words, tmp_path / "one", code=0)
+    called(SATELLITE, *words, tmp_path / "many", "--vary", "p=0.01:0.02:3", code=0)
+    called(SATELLITE, *words, tmp_path / "slopes", "--sensitivity", "p", code=0)
+
+    def first(file: Path) -> dict[str, float]:
+        with file.open(encoding="utf-8") as lines:
+            return {name: float(x) for name, x in next(csv.DictReader(lines)).items()}
+
+    usual, member = first(tmp_path / "one" / "trajectory.csv"), first(tmp_path / "many" / "ensemble.csv")
+    slopes = first(tmp_path / "slopes" / "sensitivity.csv")
+    for name in ("q", "r", "e0", "e1", "e2", "e3"):
+        assert member[f"{name}_mean"] == pytest.approx(usual[name], abs=1e-15)
+        assert slopes[f"d {name}/d p(0)"] == pytest.approx(0, abs=1e-12)
+    assert member["p_mean"] == pytest.approx(0.015)
+    assert slopes["d p/d p(0)"] == pytest.approx(1)
 
 
 @pytest.mark.parametrize(

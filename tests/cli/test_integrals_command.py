@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -208,8 +209,17 @@ def test_systems_in_angles_have_rates_sines_and_cosines():
         (4, "generalised energy"),
     ]
     assert data["complete"] is True
-    driven = run("systems/cart-pole.yaml", code=1)
-    assert "F, a function of the time, occurs" in driven.stderr
+
+
+def test_inputs_are_held_as_on_the_unperturbed_motion(tmp_path):
+    """A cart that nothing pushes keeps its momentum and its energy."""
+    text = Path("systems/cart-pole.yaml").read_text(encoding="utf-8")
+    file = tmp_path / "cart-pole.yaml"
+    file.write_text("".join(x for x in text.splitlines(True) if "damper" not in x), encoding="utf-8")
+    driven = run(str(file), "--json")
+    assert "the inputs are constant, as on the unperturbed motion: F = 0" in driven.stderr
+    names = {one["name"] for one in json.loads(driven.stdout)["integrals"]}
+    assert names == {"momentum of p", "generalised energy"}
 
 
 def test_a_root_of_what_is_known_is_one_more():

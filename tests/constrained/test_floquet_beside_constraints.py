@@ -11,11 +11,14 @@ import cmath
 import numpy as np
 import pytest
 from conftest import SHIPPED
+from flint import arb, arb_series
 from scipy.integrate import solve_ivp
 
 import mbsym
+from mbsym.algebra.program import Program
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.orbits.floquet import ConstantCoefficients, NotPeriodic, Word, judged
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.orbits.floquet import ConstantCoefficients, NotPeriodic, Word, judged, series
 from mbsym.numerics.scenario import scenario
 
 TEXT = """
@@ -87,12 +90,13 @@ def test_what_is_the_same_at_all_times_is_told_to_be_that(name: str) -> None:
         mbsym.floquet(mbsym.load(SHIPPED / f"{name}.yaml"))
 
 
-def test_rows_that_follow_from_others_are_no_jumps() -> None:
-    """A rod that keeps a distance said twice: pivots among dependent rows hold moduli and signs, smooth there."""
-    row = TEXT.split("constraints:\n")[1].split("motion:")[0]
-    text = TEXT.replace(row, row + row).replace("PLACE", "l").replace("RATE", "30")
-    told = judged(Dynamics(scenario(mbsym.loads(text).system)))
-    once = found("l", 30)
-    assert (told.word, told.names) == (once.word, once.names)
-    middles = [sorted(float(x.ball.real.mid()) for x in one.multipliers) for one in (told, once)]
-    assert middles[0] == pytest.approx(middles[1], rel=1e-9)
+def test_moduli_and_signs_of_pivots_are_series_where_they_do_not_jump() -> None:
+    """|cos t - 2| = 2 - cos t, and sign(cos t - 2) = -1; where the argument may vanish there is no number."""
+    program = Program()
+    x = program.sin_cos_of(program.input("t"))[1] - program.number(2)
+    code = Code(program, ("t",), (program.function("abs", x), program.function("sign", x)))
+    modulus, sign = series(code, arb_series([0, 1], prec=5))
+    assert [float(modulus[k]) for k in range(5)] == pytest.approx([1, 0, 1 / 2, 0, -1 / 24])
+    assert [float(sign[k]) for k in range(sign.length())] == [-1]
+    unknown = Code(program, ("t",), (program.function("sign", program.input("t")),))
+    assert not series(unknown, arb_series([arb(0, 1), 1]))[0][0].is_finite()

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.soundness import complain
@@ -270,6 +271,63 @@ def test_roots_in_speeds() -> None:
             assert apart(found, np.linalg.eigvals(basis.T @ slopes @ basis)) < 1e-4, own
         tried += 1
     assert tried >= 4
+
+
+@pytest.mark.parametrize("dependent", [False, True])
+def test_first_approximations_along_motions_that_are_given_in_time(dependent: bool) -> None:
+    """x' = A(t) x along x = a(t), straight ahead but ever faster, is the flow beside it, a = v (t + t^2/4).
+
+    Of what is pulled by u = M a'' the flow over a time is differentiated by central differences.
+    """
+    tried = 0
+    for seed in range(8):
+        text = trailers(Random(f"trailers {seed}"), dependent)
+        speed = float(text.split("motion: {x: {rate: ")[1].split("}")[0])
+        mass = 2 + text.count("mass: 1,")
+        pulled = "loads:\n  - generalized force: {x: PULL}\n"
+        text = (
+            text.replace("loads:\n", pulled)
+            if "loads:" in text
+            else text.replace("constraints:", pulled + "constraints:")
+        )
+        given = text.replace("bodies:", "given: {a: {of: t}}\ninputs: {u: pull}\nbodies:", 1).replace("PULL", "u")
+        given = given.replace(f"motion: {{x: {{rate: {speed:.0f}}}}}", f"motion: {{x: a, u: {mass}*a_ddot}}")
+        analysis = analysed(given)
+        plain = analysed(text.replace("PULL", str(Fraction(speed) / 2 * mass)))
+        if analysis is None or plain is None:
+            continue
+        assert analysis.equilibrium.satisfied
+        space = analysis.state_space
+        dynamics = Dynamics(closed(scenario(plain.system)).scenario)
+        rates, state = arrays.kernel(dynamics.right_hand_side), np.array([float(x) for x in dynamics.scenario.state])
+        names = [*plain.system.coordinates, *plain.system.velocities]
+        at = [names.index(name) for name in space.states]
+        assert dynamics.constraints is not None
+        basis = dynamics.constraints.tangent(0.0, state)
+        if basis.shape[1] != len(at) or analysis.reduced.about.leaf:
+            continue
+        basis = basis @ np.linalg.inv(basis[at])
+
+        def moved(x: Any, field: Any = rates) -> Any:
+            return solve_ivp(lambda t, y: field(np.r_[t, y]), (0, 0.7), x, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+
+        flow = np.array([(moved(state + STEP * x) - moved(state - STEP * x))[at] / (2 * STEP) for x in basis.T]).T
+        rows = [[compile(str(x), "A", "eval") for x in row] for row in space.A]
+
+        def linear(growth: float, rows: Any = rows, speed: float = speed) -> Any:
+            def field(t: float, z: Any) -> Any:
+                at_time = {"a_dot": speed * (1 + growth * t / 2), "a_ddot": speed * growth / 2}
+                return (
+                    np.array([[eval(x, at_time) for x in row] for row in rows], dtype=float) @ z.reshape(len(rows), -1)
+                ).ravel()
+
+            one = np.eye(len(rows)).ravel()
+            return solve_ivp(field, (0, 0.7), one, "DOP853", rtol=1e-10, atol=1e-12).y[:, -1].reshape(len(rows), -1)
+
+        assert linear(1.0) == pytest.approx(flow, abs=1e-5 * (1 + np.max(np.abs(flow)))), given
+        assert np.max(np.abs(linear(0.0) - flow)) > 1e-3  # at a constant speed
+        tried += 1
+    assert tried >= 3
 
 
 def test_a_light_trailer_has_its_root_in_speeds() -> None:

@@ -23,9 +23,9 @@ from mbsym.model.system import System, velocity_name
 from mbsym.numerics.closing import begun, closed, fitted, shown
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Incomplete, Names, Scenario, Specialised, bound, initial_values
+from mbsym.numerics.scenario import Incomplete, Names, Scenario, Specialised, bound, exact, initial_values
 from mbsym.numerics.scenario import scenario as scenario_of_run
-from mbsym.numerics.states import StateDynamics, dynamics_of
+from mbsym.numerics.states import StateDynamics, dynamics_of, scenario_in_states
 
 if TYPE_CHECKING:
     from mbsym.numerics.constrained import Constraints
@@ -95,7 +95,17 @@ class Parametrised(Dynamics):
         return own is None or (theirs is not None and theirs.chosen == own.chosen)
 
     def _given(self, values: Mapping[str, Expression]) -> Scenario:
-        return scenario_of_run(described(self.system), self.overrides | dict(values), declared=self.in_states)
+        """Where the description gives velocities of coordinates, the other speeds stay beside another speed."""
+        system, own = described(self.system), self.overrides | dict(values)
+        speeds = {name: own[name] for speed in system.speeds if self.in_states and (name := speed.name) in values}
+        rest = {name: x for name, x in own.items() if name not in speeds}
+        if speeds and not (usual := scenario_of_run(system, rest, declared=True)).declared:
+            seen = scenario_in_states(usual)
+            names_ = (*seen.system.coordinates, *seen.system.velocities)
+            taken = {name: exact(x, usual.parameters) for name, x in speeds.items()}
+            state = tuple(taken.get(name, x) for name, x in zip(names_, seen.state, strict=True))
+            return replace(usual, declared=state)
+        return scenario_of_run(system, own, declared=self.in_states)
 
     def column(self, name: str) -> tuple[Fraction, ...]:
         """dx(0)/dc: of an initial value or a parameter c, through everything that follows from it and constraints.
@@ -105,10 +115,11 @@ class Parametrised(Dynamics):
         """
         plain = self._given({})
         scenario = fitted(plain, self.in_states)
-        center = closed(scenario, self.fixed).scenario
         numbers = dict(scenario.parameters)
         for version in (plain, scenario, shown(scenario, self.in_states)):
             numbers |= dict(zip((*version.system.coordinates, *version.system.velocities), version.state, strict=True))
+        scenario = fitted(self._given({name: number(numbers[name])}), self.in_states)  # in the variables of ``state``
+        center = closed(scenario, self.fixed).scenario
         step = STEP * max(Fraction(1), abs(numbers[name]))
         p = len(scenario.positions)
 

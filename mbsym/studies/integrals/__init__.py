@@ -225,11 +225,7 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
         return refused("no integrals", error, Exit.BAD_INPUT)
     if not isinstance(error, Failure):
         return None
-    if error.limit is Limit.DEGREE:
-        return refused("no integrals", error, Exit.BAD_INPUT, remedied=True)
-    return refused("no integrals", error)
+    return refused("no integrals", error, Exit.BAD_INPUT if error.limit is Limit.DEGREE else Exit.FAILED)
 
 
-STUDY = Study(
-    "integrals", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None, letters=True
-)
+STUDY = Study("integrals", Request, derive, answer, refusal, unfit, as_json, constraints=True, out=None, letters=True)
