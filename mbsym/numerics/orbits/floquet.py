@@ -66,9 +66,6 @@ AT_REST = Fraction(1, 10**50)
 #: When it is looked whether something is so at all times.
 TIMES = (Fraction(0), Fraction(1, 3), Fraction(7, 5), Fraction(29, 7))
 
-#: What is said of others.
-CONSTANT = "its coefficients are constant: problem 6 judges it (mbsym run)"
-
 
 class NotPeriodic(Failure):
     """There is no periodic first approximation to judge; the message says why."""
@@ -129,7 +126,10 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS, steady: boo
     code, rests = jacobian_on_motion(dynamics)
     frequency = common_frequency(code)
     if not steady and _is_the_same_at_all(code):
-        raise ConstantCoefficients(CONSTANT)
+        raise ConstantCoefficients(
+            "its coefficients are the same at [[count]] times, to 50 digits: problem 6 judges it (mbsym run)",
+            count=str(len(TIMES)),
+        )
     with ctx.workprec(bits):
         period = 2 * arb.pi() / ball(frequency)
         monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
@@ -300,7 +300,7 @@ def common_frequency(code: Code) -> Fraction:
     _require_no_time(any(slopes[node.number] for node in code.outputs))
     all_of_them = frozenset().union(*(frequencies[node.number] for node in code.outputs))
     if not all_of_them:
-        raise ConstantCoefficients(CONSTANT)
+        raise ConstantCoefficients("its coefficients are constant: problem 6 judges it (mbsym run)")
     bottom = lcm(*(frequency.denominator for frequency in all_of_them))
     return Fraction(gcd(*(int(frequency * bottom) for frequency in all_of_them)), bottom)
 
