@@ -189,7 +189,9 @@ TERMS = {
     "momentum": "of a coordinate q: p = dT/dq'",
     "lambda, multiplier, reaction": "lambda_k is the multiplier of row k of the constraints, which gives its reaction",
     "holonomic": "a constraint between positions, or one that follows from such",
-    "first approximation, linearisation, linearization, linear model": "the linear equations M q'' + (D + G) q' + (K + N) q = 0 about a motion: problem 5",
+    "first approximation, linearisation, linearization, linear model": (
+        "the linear equations M q'' + (D + G) q' + (K + N) q = 0 about a motion: problem 5"
+    ),
     "subsystem": "coordinates whose linear equations contain no others",
     "characteristic polynomial": "det(lambda^2 M + lambda (D + G) + K + N); its roots are the eigenvalues",
     "eigenvalue": "a root lambda of the characteristic polynomial: small motions grow or decay as e^(lambda t)",
