@@ -116,7 +116,7 @@ def _is_xml(text: str, complaints: Complaints) -> bool:
     if not text[len(before) :].startswith("<"):
         return False
     span = Span(before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1)
-    hint = "a robot's file (URDF, MJCF) is made into one by 'mbsym convert'"
+    hint = "a robot's file (URDF, MJCF) is made into one by 'mbsym convert FILE --symbols --out robot.yaml'"
     complaints.error("xml", "this is XML, not a description", span, hint)
     return True
 

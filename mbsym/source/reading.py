@@ -384,7 +384,8 @@ class Reading:
             if key in known:
                 entries[key] = entry
             else:
-                unsupported = _unsupported(entry.key.text)
+                plural = entry.key.text.endswith("s") and entry.key.text[:-1] in left
+                unsupported = None if plural else _unsupported(entry.key.text)
                 guess = None if unsupported else closest(entry.key.text, left)
                 keys = (
                     Message("did you mean '[[other]]'?", other=guess)

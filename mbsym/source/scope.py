@@ -319,6 +319,8 @@ class Scope:
             known += [acceleration_name(coordinate) for coordinate in self.of_kind("coordinate", "given")]
         if self.kinds.get(without_velocity(name)) == "input":
             return "an input is any function of time: what depends on its rate is no load of this system"
+        if allowed.kinds == ("coordinate",) and any(sign in name for sign in "+-"):
+            return "one coordinate is wanted; on q2 - q1 acts a 'potential', or a dissipation function 'rayleigh'"
         close = did_you_mean(name, filter(_IDENTIFIER.match, known))
         if close is not None:
             return close

@@ -60,7 +60,7 @@ def test_what_is_known_beyond_the_degree_is_told():
     """Of two links T has theta1'^2 cos(theta2), degree 3, where theta2 is the angle between them."""
     done = run("systems/double-pendulum.yaml", "--degree", "2", code=0)
     lines = [line.strip() for line in done.stdout.splitlines()]
-    assert "Integrals of problem 7 of a higher weighted degree: generalised energy 3 (--degree)." in lines
+    assert "Integrals of problem 7 of a higher weighted degree (--degree): generalised energy (3)." in lines
     assert lines.index(next(x for x in lines if x.startswith("There is none"))) == 1
     assert lines[-1].startswith("Looked for are polynomials up to weighted degree 2")
     assert "higher weighted degree" not in run("systems/double-pendulum.yaml", code=0).stdout

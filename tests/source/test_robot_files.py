@@ -109,6 +109,14 @@ def test_what_is_wrong_has_its_place(old: str, new: str, code: str, line: int) -
     assert (code, line) in complaints_of(PENDULUM.replace(old, new, 1))
 
 
+def test_a_link_that_is_misspelt_is_guessed() -> None:
+    links = '<robot name="r"><link name="base"/><link name="upper_arm"/><joint name="j" type="fixed">'
+    text = links + '<parent link="base"/><child link="uper_arm"/></joint></robot>'
+    complaints = Complaints()
+    assert convert(text, complaints) is None
+    assert "did you mean 'upper_arm'?" in [one.hint for one in complaints.items]
+
+
 def test_depth_and_size_are_bounded() -> None:
     deep = "<robot>" + "<a>" * (MAX_DEPTH + 5) + "</a>" * (MAX_DEPTH + 5) + "</robot>"
     assert complaints_of(deep)[0][0] == "too-large"

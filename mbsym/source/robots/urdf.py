@@ -27,6 +27,7 @@ from mbsym.source.robots.reader import (
     words_of,
 )
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape, Turns
+from mbsym.source.scope import did_you_mean
 
 #: The attributes of an inertia.
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -183,7 +184,7 @@ def _end(joint: Element, end: str, links: dict[str, Element], reader: Reader) ->
         return ""
     name = reader.name(element, "link")
     if name and name not in links:
-        reader.error("unknown-name", f"there is no link {ascii_safe(name)}", element)
+        reader.error("unknown-name", f"there is no link {ascii_safe(name)}", element, did_you_mean(name, links))
     return name
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, worded
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
 from mbsym.studies.section import no_number
@@ -154,7 +154,7 @@ def answer(context: Asked, request: Request, derived: Found) -> Answer:
 
 def _lines(derived: Found) -> Iterator[Line | Block]:
     """The integrals, what is known of them as a whole, what was looked for, and what is there besides."""
-    from mbsym.report.content import ragged
+    from mbsym.report.content import Phrase, joined, ragged, say
     from mbsym.report.sections.polynomial_integrals import listed, opening
     from mbsym.report.words.integrals_words import sentences
 
@@ -162,9 +162,9 @@ def _lines(derived: Found) -> Iterator[Line | Block]:
     formulas = [there.formula(generator.polynomial) for generator in integrals.generators]
     yield from listed(integrals, formulas)
     yield from map(ragged, sentences(integrals))
-    if beyond := _beyond(derived):
-        message = Message("Integrals of problem 7 of a higher weighted degree: [[names]] (--degree).", names=beyond)
-        yield ragged(message)
+    if beyond := [Phrase((worded(name), f" ({weight})")) for name, weight in _beyond(derived)]:
+        text = "Integrals of problem 7 of a higher weighted degree (--degree): [[names]]."
+        yield ragged(say(text, names=joined(beyond, ", ")))
     yield opening(integrals, integrals.field.variables)
     for head, texts in _sections(derived):
         yield heading(head)
@@ -172,16 +172,14 @@ def _lines(derived: Found) -> Iterator[Line | Block]:
             yield line("    ", text, whole=True)
 
 
-def _beyond(derived: Found) -> str:
+def _beyond(derived: Found) -> Iterator[tuple[str, int]]:
     """Known integrals with their weighted degrees, where these are above what was looked through."""
     grading, variables = derived.integrals.grading, derived.integrals.field.variables
-    told = []
     for name, p in derived.there.known:
         places = [p.context().names().index(x) for x in variables]
         weight = max(grading.of([powers[k] for k in places]) for powers in p.monoms())
         if weight > derived.integrals.degree:
-            told.append(f"{name} {weight}")
-    return ", ".join(told)
+            yield name, weight
 
 
 def _sections(derived: Found) -> Iterator[tuple[str, Iterator[str]]]:
