@@ -61,7 +61,7 @@ class Request:
     methods: Annotated[tuple[str, ...], METHODS] = ("all",)
     budget: Annotated[float, Number("S", BUDGET)] = 60.0
     fidelity: Annotated[bool, Flag(None, "Compare simpler models too.", both=True)] = True
-    all_rows: Annotated[bool, Flag(None, "Print every run, not only those on the front and near the target.")] = False
+    all_rows: Annotated[bool, Flag(None, "Print every run, its work, and measured orders.")] = False
     anew: Anew = False
 
 
@@ -125,28 +125,37 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
     study = answered.measured
     trade = study.trade
     truth = trade.reference
+    yield line((say(_advised(request, study)), "bold"), always=True)
     if answered.before:
         yield line("  ", say(Message(BEFORE)))
+    if not request.all_rows:
+        text = "no other run is as exact as these in as little time (--all-rows shows every run):"
+        yield line("  ", say(Message(text)))
+    yield _runs(request, study)
+    for name, reason in trade.unusable:
+        yield line("  ", (say(Message("[[method]]: not used: [[why]]", method=name, why=reason)), "yellow"))
+    if len(study.models) > 1:
+        yield _models(study)
     text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"
     error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.1e}", duration(truth.seconds)
     yield line("  ", say(Message(text, method=truth.method, error=error, time=time, least=least)))
-    yield _runs(request, study)
+    if request.all_rows:
+        yield from _measured(request, trade, say)
+
+
+def _measured(request: Request, trade: trade_study.Tradeoff, say: Callable[[str], str]) -> Iterator[Line]:
+    """The orders of methods, and what measuring cost."""
     for order in trade.orders:
         if order.pairs > 1:
             text = "measured order [[order]], nominal [[nominal]] (halvings of the step: [[count]])"
             message = Message(text, order=f"{order.measured:.2f}", nominal=order.nominal, count=order.pairs)
             yield line(f"  {order.method}, {order.scalar}: ", say(message))
-    for name, reason in trade.unusable:
-        yield line("  ", (say(Message("[[method]]: not used: [[why]]", method=name, why=reason)), "yellow"))
     text = (
         "cost: [[reference]] for the reference, [[runs]] for the runs, of a budget of [[budget]]; counted work, in "
         "seconds of a usual machine, as in the column cost"
     )
-    costs = {"reference": f"{truth.cost:.2g}", "runs": f"{trade.spent:.2g}"}
+    costs = {"reference": f"{trade.reference.cost:.2g}", "runs": f"{trade.spent:.2g}"}
     yield line("  ", say(Message(text, budget=f"{request.budget:g}", **costs)))
-    if len(study.models) > 1:
-        yield _models(study)
-    yield line((say(_advised(request, study)), "bold"), always=True)
 
 
 def _advised(request: Request, found: trade_study.Study) -> Message:
@@ -157,17 +166,23 @@ def _advised(request: Request, found: trade_study.Study) -> Message:
     return joined(filter(None, said))
 
 
+#: What is told of a run only where all are.
+_OF_ALL = ("evaluations", "steps", "cost", "front")
+
+
 def _runs(request: Request, study: trade_study.Study) -> Block:
-    """Runs on the front and near the target, or every one."""
+    """Runs on the front, from the least exact to the most exact one; or every run, method by method."""
     from mbsym.report.content import aligned, column
     from mbsym.report.runs.tradeoff_table import constrained, shown
 
-    near = [row for row in study.trade.rows if row.front or request.target / 10 < row.error < request.target * 10]
-    rows = study.trade.rows if request.all_rows else near
+    rows, every = study.trade.rows, request.all_rows
+    if not every:
+        rows = tuple(sorted((row for row in rows if row.front), key=lambda row: -row.error))
     drift_columns = ("constraints",) if constrained(rows) else ()
     names = ("method", "setting", "error", "drift", *drift_columns, "evaluations", "steps", "time", "cost", "front")
-    columns = [column(Message(name), right=name not in ("method", "setting", "front")) for name in names]
-    return aligned(columns, shown(rows, study.trade.smallest_judged))
+    told = [k for k, name in enumerate(names) if every or name not in _OF_ALL]
+    columns = [column(Message(names[k]), right=names[k] not in ("method", "setting", "front")) for k in told]
+    return aligned(columns, [[cells[k] for k in told] for cells in shown(rows, study.trade.smallest_judged)])
 
 
 def _models(study: trade_study.Study) -> Block:

@@ -257,7 +257,9 @@ def test_a_refuted_claim_is_a_finding_unless_claims_are_strict(tmp_path: Path) -
         assert done.exit_code == code, (path, strict, done.output)
         assert ("CLAIM DOES NOT HOLD: eq. (9): kinetic energy: differs" in done.stderr) == (code == 1)
     done = invoked("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2")
-    assert re.search(r"Claims +1 refuted\n +eq\. \(9\), kinetic energy: differs\n", done.stdout)
+    # J theta'^2/2 beside (J + m l^2) theta'^2/2
+    told = r"Claims +1 refuted\n +eq\. \(9\), kinetic energy: differs; claimed minus derived: at theta'\^2: -m l\^2/2\n"
+    assert re.search(told, done.stdout)
     done = invoked("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2", "-v")
     assert "Claimed minus derived is" in done.stdout
     assert "at theta'^2: -m l^2/2" in done.stdout

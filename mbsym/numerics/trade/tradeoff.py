@@ -154,7 +154,8 @@ def tradeoff(
             break
     rows = [row for pair in pairs for row in rows_by_method.get(_name(*pair), ())]
     orders = tuple(_orders(rows))
-    return Tradeoff(_with_front(rows), reference, orders, tuple(dict.fromkeys(unusable)), interrupted, judge.spent)
+    found = Tradeoff(tuple(rows), reference, orders, tuple(dict.fromkeys(unusable)), interrupted, judge.spent)
+    return replace(found, rows=_with_front(rows, found.smallest_judged))
 
 
 def _name(method: Method, scalar: str) -> tuple[str, str]:
@@ -294,13 +295,17 @@ def _settings(method: Method, scalar: str, duration: float) -> Iterator[Setting]
             yield Setting(tolerance=10.0**power)
 
 
-def _with_front(rows: Sequence[Measured]) -> tuple[Measured, ...]:
-    """A row is on the Pareto front if none is no worse in cost and error, and better in one of them."""
+def _with_front(rows: Sequence[Measured], least: float) -> tuple[Measured, ...]:
+    """A row is on the Pareto front if none is no worse in cost and error, and better in one of them.
+
+    Errors below ``least`` are not told apart.
+    """
     best = inf
     front = set()
     for place in sorted(range(len(rows)), key=lambda k: (rows[k].seconds, rows[k].error)):
-        if rows[place].error < best:
-            best = rows[place].error
+        error = max(rows[place].error, least)
+        if error < best:
+            best = error
             front.add(place)
     return tuple(replace(row, front=place in front) for place, row in enumerate(rows))
 

@@ -215,7 +215,7 @@ def test_sentences_of_symmetries_have_their_translations():
     found = Analysis(mbsym.load(SHIPPED / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
     listed = found.symmetries.symmetries
     said = {
-        symmetry_words.OPENING,
+        symmetry_words.LOOKED_FOR,
         symmetry_words.KNOWN,
         symmetry_words.DEPENDS,
         symmetry_words.GIVES,
