@@ -369,8 +369,8 @@ def test_methods_that_are_said_to_keep_to_constraints_do(name: str) -> None:
 
 def test_tradeoff_tells_from_where_it_begins_and_what_does_not_apply(tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(PENDULUM.replace("3/5", "1/2"), encoding="utf-8")
-    words = ["tradeoff", tmp_path / "s.yaml", "--time", 2, "--budget", 20, "--out", tmp_path / "out", "--methods"]
-    result = CliRunner().invoke(main, [str(word) for word in [*words, "rk4,rk45,lsoda"]])
+    words = ["tradeoff", tmp_path / "s.yaml", "--time", 2, "--all-rows", "--budget", 20, "--out", tmp_path / "out"]
+    result = CliRunner().invoke(main, [str(word) for word in [*words, "--methods", "rk4,rk45,lsoda"]])
     assert result.exit_code == 0, result.output
     assert "what was given does not satisfy the constraints" in result.stderr
     assert "lsoda does not keep to constraints" in result.stdout
