@@ -115,13 +115,13 @@ def equilibria(
         return _by_rates(carried, _listed(carried, first.system, within, limits or Limits(), len(carried.rows)))
     rank = rank_of(first) if rank is None else rank
     listed = _listed(first, first.system, within, limits or Limits(), rank, described_place(system, first, values))
-    if listed.complete or not listed.families:
+    if not listed.families:
         return listed
     symmetric, changed = with_cyclic_last_angles(first)
     if not changed:
         return listed
     counted = _listed(symmetric, first.system, within, limits or Limits(), rank)
-    if not counted.complete:
+    if not counted.complete or (listed.complete and counted.families):  # points tell more than families do
         return listed
     turns = (
         Message(
