@@ -58,9 +58,9 @@ TESTS := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 test: $(READY)
 	$(TESTS) -m "not slow"
 
-# What `make test` leaves out, and every property once more, on more examples.
+# What `make test` leaves out, and every property once more, on more examples; PART=1/3 for a third of it.
 test-slow: $(READY)
-	$(TESTS) -m "slow or hypothesis" --hypothesis-profile thorough
+	$(TESTS) -m "slow or hypothesis" --hypothesis-profile thorough $(addprefix --part ,$(PART))
 
 test-all: test test-slow
 

@@ -12,6 +12,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import pytest
 
@@ -31,13 +32,19 @@ _began = pytest.StashKey[float]()
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--record-durations", action="store_true", help=f"write what takes long into tests/{FILE.name}")
+    parser.addoption("--part", metavar="K/N", help="the K-th of N parts of what is chosen; by names")
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
         if item.nodeid in RECORDED:
             item.add_marker("slow")
+    if part := config.getoption("part"):
+        k, n = map(int, part.split("/"))
+        others = [item for item in items if crc32(item.nodeid.encode()) % n != k % n]
+        items[:] = [item for item in items if crc32(item.nodeid.encode()) % n == k % n]
+        config.hook.pytest_deselected(items=others)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -1,4 +1,7 @@
-"""``make test`` leaves out what is slow and nothing else, ``make test-all`` and CI leave out nothing."""
+"""``make test`` leaves out what is slow and nothing else, ``make test-all`` leaves out nothing.
+
+CI runs all of it on a machine that is quick enough, and a third of what is slow, in turns, on any.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,14 @@ def test_together_the_two_runs_are_all() -> None:
 
 def test_ci_runs_the_command_of_the_readme_and_what_it_leaves_out() -> None:
     run = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
-    assert re.findall(r"^make (test.*)$", run, re.MULTILINE) == ["test", "test-slow"]
+    assert re.findall(r"^ *make (test\S*)", run, re.MULTILINE) == ["test", "test-slow", "test-slow"]
+    (turns,) = re.findall(r"^first=.*^done$", run, re.MULTILINE | re.DOTALL)
+    for seconds, count in ((0, 3), (5400, 1)):
+        shell = f"make() {{ echo $2; }}; git() {{ echo c0ffee; }}; SECONDS={seconds}; {turns}"
+        told = subprocess.run(["bash", "-euc", shell], capture_output=True, text=True, check=True).stdout.splitlines()
+        parts = [line for line in told if line.startswith("PART")]
+        assert len({*parts}) == len(parts) == count
+        assert {*parts} <= {f"PART={k}/3" for k in (1, 2, 3)}
     assert re.search(r"^make test ", (ROOT / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
 
 
@@ -107,6 +117,8 @@ def test_what_is_slow_is_named_recorded_and_then_left_out(tmp_path: Path) -> Non
     assert recorded == {"test_it.py::test_burns[0.4]": pytest.approx(0.5, abs=0.15)}
     assert "1 passed" in (left := run("-m", "not slow"))
     assert "of processor" not in left
+    parts = [re.findall(r"(\d) passed", run("--part", f"{k}/2", "-p", "no:cacheprovider")) for k in (1, 2)]
+    assert sum(int(count) for found in parts for count in found) == 2
 
 
 def test_properties_are_tried_on_a_quarter_or_on_all() -> None:
