@@ -97,13 +97,15 @@ class AlgebraicPoint:
 class Family:
     """Infinitely many real solutions: a component of ``dimension`` near the regular real point ``sample``.
 
-    ``equations`` vanish on it (and on its closure); ``free`` are variables that may be chosen near the sample.
+    ``equations`` vanish on it (and on its closure); ``free`` are variables that may be chosen near the sample, which is
+    ``special`` where it is none that was met by chance.
     """
 
     equations: tuple[Polynomial, ...]
     dimension: int
     free: tuple[int, ...]
     sample: AlgebraicPoint
+    special: bool = False
 
     def contains(self, point: AlgebraicPoint) -> bool:
         return all(point.residue(x) == 0 for x in self.equations)
@@ -456,7 +458,7 @@ class _Solver:
             if all(point.residue(x) == 0 for x in closure):
                 there = _free_at(closure, point, free)
                 if len(there) == len(free):
-                    self.families.append(Family(tuple(closure), len(free), there, point))
+                    self.families.append(Family(tuple(closure), len(free), there, point, special=True))
                     return
         text = "a set of solutions of complex dimension [[count]] in which no regular real point was found"
         self.unfinished.append(Message(text, count=len(free)))

@@ -121,7 +121,8 @@ def equilibria(
     if not changed:
         return listed
     counted = _listed(symmetric, first.system, within, limits or Limits(), rank)
-    if not counted.complete or (listed.complete and counted.families):  # points tell more than families do
+    special = any(x.special for x in listed.families)  # such a sample tells little of the others
+    if not counted.complete or (listed.complete and not (special and not counted.families)):
         return listed
     turns = (
         Message(
@@ -600,5 +601,6 @@ class _ChartSearch(SearchInBoxes):
                 self.verdict(place),
                 self.chart.label,
                 {name: place.balls[name] for name in self.occurring},
+                family.special,
             )
         )

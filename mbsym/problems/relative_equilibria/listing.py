@@ -277,7 +277,8 @@ class RelativeEquilibrium:
 class EquilibriumFamily:
     """Relative equilibria that are not isolated: a real set of ``dimension``, all solutions of ``equations`` = 0.
 
-    ``sample`` is one of them, in ``enclosures``, ``verdict`` the verdict there; ``free`` may be chosen near it.
+    ``sample`` is one of them, in ``enclosures``, ``verdict`` the verdict there; ``free`` may be
+    chosen near it; ``special`` if it is none that was met by chance.
     """
 
     dimension: int
@@ -287,6 +288,7 @@ class EquilibriumFamily:
     verdict: Verdict
     coordinates_of: str = ""
     enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    special: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
