@@ -1,7 +1,7 @@
-# make          lint, types and tests: the same as CI
+# make          lint, types and all tests
 # make demo     sets up an environment and runs the satellite of the paper
 # make test     sets up and runs the tests, but those that are slow
-# make test-all the others as well, and properties on more examples: as CI
+# make test-all the others as well, and properties on more examples
 # make systems  every description that comes with it, in one line each
 # make gallery  draws docs/figures/systems and the README's first picture again
 # make window   draws the pictures of a paper, a robot and the editor again (TeX, Chromium)

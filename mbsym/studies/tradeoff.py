@@ -128,10 +128,11 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
     yield line((say(_advised(request, study)), "bold"), always=True)
     if answered.before:
         yield line("  ", say(Message(BEFORE)))
-    if not request.all_rows:
+    every = request.all_rows or not any(row.front for row in trade.rows)  # where all failed there is no front
+    if not every:
         text = "no other run is as exact as these in as little time (--all-rows shows every run):"
         yield line("  ", say(Message(text)))
-    yield _runs(request, study)
+    yield _runs(study, every)
     for name, reason in trade.unusable:
         yield line("  ", (say(Message("[[method]]: not used: [[why]]", method=name, why=reason)), "yellow"))
     if len(study.models) > 1:
@@ -170,12 +171,12 @@ def _advised(request: Request, found: trade_study.Study) -> Message:
 _OF_ALL = ("evaluations", "steps", "cost", "front")
 
 
-def _runs(request: Request, study: trade_study.Study) -> Block:
+def _runs(study: trade_study.Study, every: bool) -> Block:
     """Runs on the front, from the least exact to the most exact one; or every run, method by method."""
     from mbsym.report.content import aligned, column
     from mbsym.report.runs.tradeoff_table import constrained, shown
 
-    rows, every = study.trade.rows, request.all_rows
+    rows = study.trade.rows
     if not every:
         rows = tuple(sorted((row for row in rows if row.front), key=lambda row: -row.error))
     drift_columns = ("constraints",) if constrained(rows) else ()
