@@ -90,8 +90,9 @@ __all__ = [
 
 #: The size of one interreduction under constraints (four-bars: 600,000): above this one alone may take minutes.
 REDUCTION = 4_000_000
-#: With multipliers among the unknowns (a five-bar has 48 complex rests, 54 elements of a basis, 800 bits).
-WITH_MULTIPLIERS = Limits(elements=120, pairs=1_000, bits=3_000, work=2_000_000)
+#: With multipliers among the unknowns (a five-bar has 48 complex rests, 54 elements of a basis, 800 bits, and takes
+#: interreductions of 6e7; one of 7e8 takes minutes).
+WITH_MULTIPLIERS = Limits(elements=120, pairs=1_000, bits=3_000, work=2_000_000, reduction=200_000_000)
 #: Of longer equations of steady motions along symmetries the multipliers are not eliminated, but looked for, too.
 MOST_ELIMINATED = 150
 

@@ -139,7 +139,7 @@ def error_lines(estimate: ErrorEstimate | NoEstimate) -> Iterator[Message]:
         return
     names, error = ", ".join(q.name for q in resting), max(q.largest for q in resting)
     floor = min(q.floor for q in resting)
-    if error == 0 and floor == 0:
+    if error == 0:
         yield Message("at rest in this run and in the better one: [[names]]", names=names)
         return
     text = (
