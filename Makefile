@@ -58,7 +58,7 @@ TESTS := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 test: $(READY)
 	$(TESTS) -m "not slow"
 
-# What `make test` leaves out, and every property once more, on more examples; PART=1/3 for a third of it.
+# What `make test` leaves out, and every property once more, on more examples; PART=1/6 for a sixth of it.
 test-slow: $(READY)
 	$(TESTS) -m "slow or hypothesis" --hypothesis-profile thorough $(addprefix --part ,$(PART))
 
