@@ -247,6 +247,14 @@ class Dynamics:
         return self._code([energy, self._jacobi(lagrangian, momenta)])
 
     @cached_property
+    def integral_slopes(self) -> Code:
+        """(t, q, q') -> d (T2 - T0 - U, p) / d (q, q') row by row, (1 + n) 2n outputs."""
+        fresh = self._specialised
+        states = [fresh.input(name) for name in self.inputs[1:]]
+        rows = jacobian(fresh, [self.energies.outputs[1], *self.momenta.outputs], states)
+        return self._code([node for row in rows for node in row])
+
+    @cached_property
     def _inertial(self) -> Sequence[Node]:
         """(T - U without the gyrostatic term, T, U) of the motion in inertial space, in the specialised program."""
         _ = self.relative_energy  # always first: roundings hang on the order in which a program is written

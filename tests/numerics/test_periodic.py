@@ -420,3 +420,17 @@ def test_an_orbit_does_not_depend_on_the_unit_of_length(size: str, unit: float) 
     assert found.period == pytest.approx(4 * ellipk(square / (2 * w**2)) / w, rel=1e-11)
     assert found.trivial == 2
     assert found.verified < 1e-10
+
+
+@pytest.mark.parametrize("keep", ["auto", "nothing"])
+def test_an_orbit_does_not_depend_on_the_origin(keep: str) -> None:
+    """The same about x = 10^6: a swing of a tenth is neither rest nor closed after what is no period of it."""
+    text = QUARTIC.replace("x**", "(x - c)**") + "values: {k: 1, c: 10**6}\ninitial: {x: 1000000.1, y: 0}\n"
+    text = text.replace("{k: positive}", "{k: positive, c: positive}")
+    found = mbsym.orbit(mbsym.loads(text), 6.2, keep=keep)
+    found = getattr(found, "orbit", found)
+    x, v = found.state[0] - 1e6, found.state[2]
+    square = np.sqrt(1 + 4 * (v**2 / 2 + x**2 / 2 + x**4 / 4)) - 1  # A^2
+    w = np.sqrt(1 + square)
+    assert square > 1e-4
+    assert found.period == pytest.approx(4 * ellipk(square / (2 * w**2)) / w, rel=1e-7)

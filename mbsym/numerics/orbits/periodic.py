@@ -33,7 +33,7 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
 from mbsym.numerics.orbits.variational import Flow
 
-#: Newton's steps at most, and how small what is left over must be, as part of the state's size.
+#: Newton's steps at most, and how small what is left over must be, as part of the motion's size.
 MOST_STEPS, CLOSED = 40, 1e-11
 
 #: What rounding and a motion that is hard to follow may leave over, once so many steps bring nothing more.
@@ -45,8 +45,12 @@ SHORTEST, HALVINGS = 0.05, 4
 #: How strongly singular values are damped, as multiples of what is left over; tried one after the other.
 DAMPINGS = (0.01, 0.1, 1.0, 1e-4, 0.0)
 
-#: Where the motion's speed times its period is this part of the state's size only, it rests.
+#: Where the motion's speed times its period is this part of the size of the guess's motion only, it rests.
 RESTING = 1e-6
+
+#: A motion is measured at so many times; what moves by less than this part of what moves most, in parts of the state's
+#: sizes, is measured as if it moved as much; no motion is smaller than this part of the state's size.
+MEASURED, BESIDE, LEAST = 64, 1e-4, 1e-9
 
 #: Singular values below this part of the largest are those of directions along which the orbit may be moved.
 RANK = 1e-9
@@ -74,7 +78,7 @@ class Trivial:
 class Orbit:
     """A periodic motion x(t + T) = x(t) + turns, which are whole revolutions or what a coordinate is shifted by.
 
-    ``closure`` is |x(T) - x0 - turns| as part of the state's size, by the method that found it; ``verified`` the same
+    ``closure`` is |x(T) - x0 - turns| as part of the motion's size, by the method that found it; ``verified`` the same
     by ``verifier``, another method.  ``multipliers`` are in decreasing order of size; ``uncertainty`` is how far they
     move when Phi is computed with another tolerance.  ``trivial`` of them are 1 for the ``reasons``.
     """
@@ -173,7 +177,8 @@ def periodic_orbit(
             raise NotFound(Message("the motion depends on [[name]], which has to come back", name=name))
     energy = _Energy(dynamics, sizes)
     shifted = np.array([name in guess.shifted for name in names])
-    search = _Search(flow, turns, shifted, energy, energy(guess.state) if guess.keep_energy else None)
+    motion = _size_of_motion(dynamics, guess, energy.scale(guess.state))
+    search = _Search(flow, turns, shifted, energy, energy(guess.state) if guess.keep_energy else None, motion)
     here = search.at(np.array(guess.state, float), float(guess.period))
     if here is None:
         raise NotFound(Message("the motion of the guess breaks down before its period is over"))
@@ -182,7 +187,7 @@ def periodic_orbit(
         watch(count, here.size)
         if here.size < CLOSED or (best.size < NEARLY and since >= PATIENCE):
             turns = np.where(shifted, best.end - best.state, turns)
-            orbit = _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy)
+            orbit = _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy, motion)
             return replace(orbit, shifted=guess.shifted)
         forward = rates(np.concatenate(([0.0], here.state))) if free_period else None
         ahead = rates(np.concatenate(([here.period], here.end))) if free_period else None
@@ -196,11 +201,28 @@ def periodic_orbit(
     left = min(best.size, here.size)
     raise NotFound(
         Message(
-            "no convergence: what is left over after [[steps]] is [[left]] of the state's size",
+            "no convergence: what is left over after [[steps]] is [[left]] of the motion's size",
             steps=Counted(count + 1, "step"),
             left=f"{left:.1e}",
         )
     )
+
+
+def _size_of_motion(dynamics: Dynamics, guess: Guess, scale: Any) -> Any:
+    """Half the range of each component over a period of the guess, wherever its zero is.
+
+    Shape (2n,).  A motion that breaks down is measured by ``scale`` alone.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            run = METHODS["dop853"].start(dynamics, Setting(1e-8), FLOAT64, initial=np.asarray(guess.state, float))
+            states = np.asarray(run.fill(np.linspace(0.0, guess.period, MEASURED)), float)
+    except (Breakdown, Unusable):
+        return scale
+    ranges = (np.ptp(states, axis=1) / 2 / scale).reshape(2, -1)  # coordinates, velocities
+    most = np.max(ranges, axis=1, keepdims=True)
+    ranges = np.where(ranges > BESIDE * most, ranges, np.where(most > 0, most, 1.0))
+    return scale * np.clip(ranges, LEAST, 1.0).ravel()
 
 
 def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess, sizes: Any) -> None:
@@ -252,8 +274,11 @@ class _Place:
 class _Search:
     """Newton's method with steps that are shortened until what is left over becomes smaller."""
 
-    def __init__(self, flow: Flow, turns: Any, shifted: Any, energy: _Energy, wanted: float | None) -> None:
+    def __init__(
+        self, flow: Flow, turns: Any, shifted: Any, energy: _Energy, wanted: float | None, motion: Any
+    ) -> None:
         self.flow, self.turns, self.shifted, self.energy, self.wanted = flow, turns, shifted, energy, wanted
+        self.motion = motion
 
     def at(self, state: Any, period: float) -> _Place | None:
         """None where the motion breaks down."""
@@ -263,7 +288,7 @@ class _Search:
         except Breakdown:
             return None
         rest = np.where(self.shifted, 0.0, end - state - self.turns)
-        size = float(np.max(np.abs(rest) / self.energy.scale(state)))
+        size = float(np.max(np.abs(rest) / self.motion))
         if self.wanted is not None:
             off = self.wanted - self.energy(state)
             rest = np.append(rest, -off)
@@ -272,12 +297,12 @@ class _Search:
 
     def step(self, here: _Place, forward: Any, ahead: Any) -> Callable[[float], Any]:
         """(dx0, dT), or dx0 alone, by the damping; ``forward`` is f at the start, orthogonal to dx0, ``ahead`` f at the
-        end.  All in parts of the state's sizes, of the period and of the energy, so that units do not count.
+        end.  All in parts of the motion's sizes, of the period and of the energy, so that units do not count.
 
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """
         size, basis = self.flow.size, self.flow.tangent(here.state)
-        scale = self.energy.scale(here.state)
+        scale = self.motion
         allowed = np.diag(scale) if basis is None else scale[:, None] * np.linalg.qr(basis / scale[:, None])[0]
         matrix, units = np.where(self.shifted[:, None], 0.0, here.phi - np.eye(size)), scale
         if self.wanted is not None:
@@ -329,10 +354,11 @@ def _least_squares(matrix: Any, right: Any, damping: float) -> Any:
 
 
 class _Energy:
-    """h = T2 - T0 - U and its gradient; ``sizes`` are those that the scene gives the components of the state."""
+    """h = T2 - T0 - U, momenta and their gradients; ``sizes`` are those that the scene gives parts of the state."""
 
     def __init__(self, dynamics: Dynamics, sizes: Any) -> None:
-        self._energies, self.sizes = compiled_kernel(dynamics, "energies"), sizes
+        self._energies, self._slopes = (compiled_kernel(dynamics, name) for name in ("energies", "integral_slopes"))
+        self.sizes = sizes
 
     def scale(self, state: Any) -> Any:
         """What changes of a state are measured by."""
@@ -346,29 +372,26 @@ class _Energy:
         return float(self._energies(np.concatenate(([0.0], state)))[1])
 
     def gradient(self, state: Any) -> Any:
-        """By central differences of sixth order, good to some 11 digits."""
-        return _differences(self, state, self.scale(state))
+        """dh / d (q, q'), shape (2n,)."""
+        return self.slopes(state)[0]
 
-
-def _differences(function: Callable[[Any], Any], state: Any, scale: Any) -> Any:
-    rows = []
-    for place in range(len(state)):
-        h = 1e-2 * scale[place]
-        total = 0.0
-        for k, weight in ((1, 0.75), (2, -0.15), (3, 1 / 60)):
-            for sign in (1, -1):
-                moved = np.array(state, float)
-                moved[place] += sign * k * h
-                total = total + sign * weight * function(moved) / h
-        rows.append(total)
-    return np.array(rows)
+    def slopes(self, state: Any) -> Any:
+        """Those of h and of the momenta, shape (1 + n, 2n)."""
+        return np.reshape(self._slopes(np.concatenate(([0.0], state))), (-1, len(state)))
 
 
 def _orbit(
-    dynamics: Dynamics, flow: Flow, place: _Place, turns: Any, steps: int, free: bool, rates: Any, energy: _Energy
+    dynamics: Dynamics,
+    flow: Flow,
+    place: _Place,
+    turns: Any,
+    steps: int,
+    free: bool,
+    rates: Any,
+    energy: _Energy,
+    scale: Any,
 ) -> Orbit:
     state, period = place.state, place.period
-    scale = energy.scale(state)
     path = period * rates(np.concatenate(([0.0], state))) / scale
     if free and float(np.max(np.abs(path))) < RESTING:
         raise NotFound(
@@ -383,7 +406,7 @@ def _orbit(
     )  # in parts of the sizes
     multipliers = _sorted(np.linalg.eigvals(phi))
     uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
-    reasons, count = _trivial(dynamics, state, period, phi, path if free else None, basis, energy)
+    reasons, count = _trivial(dynamics, state, period, phi, path if free else None, basis, energy, scale)
     verified, verifier = _verified(dynamics, state, period, turns, scale)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     det = float(np.linalg.det(phi))
@@ -423,12 +446,12 @@ def _distance(a: Any, b: Any) -> float:
 
 
 def _trivial(
-    dynamics: Dynamics, state: Any, period: float, phi: Any, path: Any, basis: Any, energy: _Energy
+    dynamics: Dynamics, state: Any, period: float, phi: Any, path: Any, basis: Any, energy: _Energy, scale: Any
 ) -> tuple[tuple[Trivial, ...], int]:
     """The reasons for multipliers 1 that hold at this Phi, and for how many of them they stand.
 
-    Phi and its vectors are told in ``basis``, of the changes that constraints allow, or all, in parts of the state's
-    sizes.  ``path`` is what the motion passes in a period at its speed here; None where the period is not free.
+    Phi and its vectors are told in ``basis``, of the changes that constraints allow, or all, in parts of ``scale``.
+    ``path`` is what the motion passes in a period at its speed here; None where the period is not free.
 
     Right eigenvectors span V, left ones W; where W vanishes on V, 1 has at least the multiplicity dim V + dim W.
     """
@@ -437,22 +460,18 @@ def _trivial(
     left: list[Any] = []
     reasons = []
     candidates: list[tuple[str, Any, bool]] = []
-    scale = energy.scale(state)
-    cyclic = _cyclic_coordinates(dynamics, state, scale, period)
+    cyclic = _cyclic_coordinates(dynamics, state, energy.scale(state), period)
+    slopes = energy.slopes(state)
     if path is not None:
         candidates.append((Message("the motion itself: the equations do not depend on the time"), path, True))
     if path is not None and conserves_energy(dynamics):
-        candidates.append((Message("the energy is conserved"), scale * energy.gradient(state), False))
-    momenta = compiled_kernel(dynamics, "momenta")
-    slopes = _differences(lambda x: momenta(np.concatenate(([0.0], x))), state, scale) if cyclic else None
+        candidates.append((Message("the energy is conserved"), scale * slopes[0], False))
     for name in cyclic:
         unit = np.zeros(2 * n)
         unit[names.index(name)] = 1.0
         candidates.append((Message("[[name]] is cyclic", name=name), unit, True))
-        assert slopes is not None
-        candidates.append(
-            (Message("the momentum of [[name]] is conserved", name=name), scale * slopes[:, names.index(name)], False)
-        )
+        text = Message("the momentum of [[name]] is conserved", name=name)
+        candidates.append((text, scale * slopes[1 + names.index(name)], False))
     size = float(np.linalg.norm(phi))
     for reason, vector, is_right in candidates:
         across = float(np.linalg.norm(vector - basis @ (basis.T @ vector)))

@@ -49,7 +49,7 @@ class Orbit(Hashed, frozen=True, kw_only=True):
         "by what angles come back turned, in radians, or coordinates shifted, by name",
     ]
     energy: Annotated[float, "generalised energy"]
-    closure: Annotated[float, "how far the motion is from closing, as part of the state's size"]
+    closure: Annotated[float, "how far the motion is from closing, as part of the motion's size"]
     verified: Verified
     newton_steps: Annotated[int, "steps of Newton's method", ASIDE, From("steps")]
     autonomous: Annotated[bool, "whether the equations do not know the time"]

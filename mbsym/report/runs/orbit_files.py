@@ -59,7 +59,7 @@ def sentences(motion: PeriodicMotion) -> Iterator[tuple[str, str]]:
         by = (f"{name} = {orbit.turns[orbit.names.index(name)]:.12g}" for name in orbit.shifted)
         yield Message("shifted by"), ", ".join(by)
     steps = Counted(orbit.steps, "Newton step")
-    text = "to [[size]] of the state's size after [[steps]]"
+    text = "to [[size]] of the motion's size after [[steps]]"
     yield Message("closes"), Message(text, size=f"{orbit.closure:.1e}", steps=steps)
     if isfinite(orbit.verified):
         text = "numerically: by [[method]] the same motion closes to [[size]]"
