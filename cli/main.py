@@ -145,7 +145,14 @@ class LazyGroup(click.Group):
 
             from mbsym.expressions.message import Message
 
-            near = get_close_matches(name, COMMANDS, 1)
+            from mbsym.report.formulas_by_name import named_by
+
+            near, meant = get_close_matches(name, COMMANDS, 1), named_by(name)
+            if meant:
+                shown = " ".join(meant)
+                context.fail(
+                    Message("there is no command '[[name]]'; 'mbsym show FILE [[shown]]' prints it", name=name, shown=shown)
+                )
             if near:
                 context.fail(
                     Message("there is no command '[[name]]'; did you mean '[[near]]'?", name=name, near=near[0])

@@ -152,6 +152,34 @@ def test_unknown_names_and_missing_results(tmp_path: Path) -> None:
     assert show("simple-pendulum", "constraints").exit_code == 1
 
 
+def test_the_linear_model_by_its_book_name() -> None:
+    """x' = A x: theta'' = -(m l g theta + b theta')/(m l^2 + J); of a pole on a cart what pushes and what is measured."""
+    told = show("simple-pendulum", "A", code=0).stdout.splitlines()
+    assert told[0] == "# x' = A x of x = (theta, theta_dot)"
+    rows = [line.partition("[")[2].split() for line in told[1:]]
+    assert [" ".join(row) for row in rows] == ["0 1 ]", "-m l g/(m l^2 + J) -b/(m l^2 + J) ]"]
+    pole = [line for line in show("cart-pole", "A", "--python", code=0).stdout.splitlines() if line[0] != "#"]
+    assert [line.partition(" = ")[0] for line in pole] == ["A", "B", "C", "D"]
+    assert pole[2:] == ["C = [[1, 0, 0, 0], [0, 1, 0, 0]]", "D = [[0], [0]]"]
+    # A disc rolls upright with lean'' = (4 g/(5 r) - 12 w^2/5) lean: stable where w^2 > g/(3 r) (Neimark & Fufaev).
+    disc = next(lines(derived(SHIPPED / "rolling-disc-speeds.yaml"), "A"))
+    at = {"g": 7, "r": 3, "w": Fraction(5, 2)}
+    lean, yaw = 6, 5
+    falls, turns, follows = (_number(disc.value[place], at) for place in ((lean, 3), (lean, yaw), (yaw, lean)))
+    assert falls + turns * follows == Fraction(4 * 7, 15) - Fraction(12, 5) * Fraction(25, 4)
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [("mass-matrix", "M, M0"), ("stiffness", "K"), ("Lagrangian", "L"), ("linearise", "A"), ("state_space", "A")],
+)
+def test_what_goes_by_another_name_is_found_by_what_it_is(words: str, names: str) -> None:
+    assert f"by its name here: {names}\n" in show("simple-pendulum", words, code=2).stderr
+    told = invoked(words, "x.yaml", code=2).output
+    assert f"'mbsym show FILE {names.replace(',', '')}' prints it" in told
+    assert "nonlinear" not in told
+
+
 def test_python_has_them_too() -> None:
     pendulum = mbsym.load(SHIPPED / "simple-pendulum.yaml")
     (equation,) = pendulum.equations.equalities(pendulum.system.coordinates)
