@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any, cast
 
-from mbsym.algebra.factors import content, irreducible_factors
+from mbsym.algebra.factors import content, irreducible_factors, rational_ratio
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import added, components, cramer, determinant
 from mbsym.algebra.ring import Polynomial, Ring
@@ -22,7 +22,7 @@ from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
 from mbsym.model.system import INERTIAL
 from mbsym.problems.constraints.motion import dependent_velocities
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
-from mbsym.report.conditions import Shown, Statement, is_letter, label_meanings, statements
+from mbsym.report.conditions import Labels, Shown, Statement, cases, is_letter, label_meanings, statements
 from mbsym.report.content import Number
 from mbsym.report.sections.equations import balances
 
@@ -296,11 +296,22 @@ def _freed(ring: Ring, known: Signs, row: Iterable[tuple[Polynomial, ...]]) -> l
 
 
 def _conditions(analysis: Analysis) -> Iterator[Line]:
-    """What ``statements`` lists, with what each is needed for; of a long one first the letters that it is told in."""
+    """What ``statements`` lists, with what each is needed for; of a long one first the letters that it is told in.
+
+    In front of it what verdicts presume, and the first case, where its conditions are others: sufficient ones.
+    """
+    if analysis.system.inputs:
+        yield Line("", Message("while the inputs keep their values on the unperturbed motion"))
+    own = analysis.equilibrium.conditions
+    presumed = analysis.stability.presumed
+    further = (x for x in presumed if all(rational_ratio(x.polynomial, y.polynomial) is None for y in own))
+    for x in (*own, *further):
+        yield Line("", x, remark=Message("provided that"))
     for part in analysis.stability.subsystems:
         of = ", ".join(part.coordinates)
         labels = label_meanings(part.ring, part.theory.requirements)
         items = list(statements(part.ring, part.theory.requirements, told=labels))
+        yield from _of_other_conditions(part, labels, items, of)
         text = "conditions: [[wanted]]"
         if not items:
             text = "conditions: [[wanted]]; none was found"
@@ -315,6 +326,25 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
                 yield from (Line(letter, value) for letter, value in letters if not is_letter(value, str(letter)))
             yield Line("", formula, item.relation, _remark(item, of))
             shown.show(item)
+
+
+def _of_other_conditions(
+    part: SubsystemStability, labels: Labels, items: Sequence[Statement], of: str
+) -> Iterator[Line]:
+    """The first case, if it needs all of some conditions, one of which is none of the ``items``, nor one reversed."""
+    listed = Shown()
+    for item in items:
+        listed.show(item)
+    told = (x for x in cases(part.ring, part.theory.cases, labels, part.theory.uncovered) if x.conditional)
+    case = next(told, None)  # the others are about what is left of it
+    if case is None or case.any_of or all(map(listed.reference, case.all_of)):
+        return
+    if any(item.formula is None for item in case.all_of):
+        return
+    text = "[[verdict]] ([[theorems]]), if all of these hold:" if case.theorems else "[[verdict]], if all of these hold:"
+    gaps = {"theorems": joined(map(worded, case.theorems), ", ")} if case.theorems else {}
+    yield Line("", Message(text, verdict=worded(case.word.value), **gaps), "", of)
+    yield from (Line("", cast(Formula, item.formula), item.relation) for item in case.all_of)
 
 
 def _remark(item: Statement, of: str) -> str:

@@ -212,6 +212,18 @@ def test_words_and_roots_may_be_pasted(tmp_path: Path) -> None:
         assert line.startswith("%") or "\\text" not in line
 
 
+def test_conditions_that_suffice_stand_before_those_that_are_needed() -> None:
+    """Gutnik & Sarychev: B - A + h > 0 and 4 (B - C) + h > 0; needed is only their product beside others."""
+    told = show("orbital-gyrostat", "conditions", code=0).stdout.splitlines()
+    assert told[:4] == ["# provided that", "h1 = 0", "# provided that", "h3 = 0"]
+    at = told.index("stable (Routh), if all of these hold:")
+    assert told[at - 1 : at + 4] == ["# psi, phi", told[at], "B - A + h > 0", "4 B - 4 C + h > 0", "# psi, phi"]
+    assert told[at + 4].startswith("conditions: ")
+    # Pitch needs what suffices, which is told once; where nothing suffices nothing is said to.
+    assert told.count("A - C > 0") == 1
+    assert "if all of these hold" not in show("ziegler", "conditions", code=0).stdout
+
+
 def test_determinants_are_those_that_a_paper_prints() -> None:
     """Banshchikov & Vetrov, before (5): rows freed of positive factors, in alpha, gamma, p1, p2."""
     told = show("satellite", "determinants").stdout
