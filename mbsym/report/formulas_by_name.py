@@ -341,9 +341,11 @@ def _of_other_conditions(
         return
     if any(item.formula is None for item in case.all_of):
         return
-    text = "[[verdict]] ([[theorems]]), if all of these hold:" if case.theorems else "[[verdict]], if all of these hold:"
-    gaps = {"theorems": joined(map(worded, case.theorems), ", ")} if case.theorems else {}
-    yield Line("", Message(text, verdict=worded(case.word.value), **gaps), "", of)
+    verdict = Message("[[verdict]], if all of these hold:", verdict=worded(case.word.value))
+    if case.theorems:
+        text = "[[verdict]] ([[theorems]]), if all of these hold:"
+        verdict = Message(text, verdict=worded(case.word.value), theorems=joined(map(worded, case.theorems), ", "))
+    yield Line("", verdict, "", of)
     yield from (Line("", cast(Formula, item.formula), item.relation) for item in case.all_of)
 
 

@@ -32,8 +32,8 @@ _GROUND = "ground"
 class Section:
     """A list of items of known kinds.
 
-    ``meant``: other words and the kinds that they mean; ``example`` shows how an item is written, ``bare`` how one is of
-    which only the text stands there; ``checks`` say what else is wrong with one and answer whether it is kept;
+    ``meant``: other words and the kinds that they mean; ``example`` shows how an item is written, ``bare`` how one is
+    of which only the text stands there; ``checks`` say what else is wrong with one and answer whether it is kept;
     ``hints`` of a value that is no mapping; ``others`` complain where the value is that of another kind, and answer
     whether it is.
     """

@@ -153,7 +153,7 @@ def test_unknown_names_and_missing_results(tmp_path: Path) -> None:
 
 
 def test_the_linear_model_by_its_book_name() -> None:
-    """x' = A x: theta'' = -(m l g theta + b theta')/(m l^2 + J); of a pole on a cart what pushes and what is measured."""
+    """x' = A x: theta'' = -(m l g theta + b theta')/(m l^2 + J); of a pole on a cart B, C and D, too."""
     told = show("simple-pendulum", "A", code=0).stdout.splitlines()
     assert told[0] == "# x' = A x of x = (theta, theta_dot)"
     rows = [line.partition("[")[2].split() for line in told[1:]]

@@ -69,7 +69,8 @@ def _tables(system: System, listed: Sequence[RelativeEquilibrium], judged: bool 
     for others in dict.fromkeys(["", *(x.coordinates_of for x in listed)]):
         rows = {number: x for number, x in enumerate(listed, 1) if x.coordinates_of == others}
         if others:
-            yield paragraph(Message("where these angles are singular, in others, about the axes of [[body]]:", body=others))
+            text = "where these angles are singular, in others, about the axes of [[body]]:"
+            yield paragraph(Message(text, body=others))
         if rows:
             yield _table(system, rows, judged)
 
