@@ -106,8 +106,7 @@ def _check(path: Path, brief: bool) -> Exit:
     sound = Message("ok: [[name]]; [[size]]", name=system.name, size=_size(system))
     if brief:
         sound = Message("ok: [[name]]", name=system.name)
-    sound = Language(system.language).say(sound)
-    print(wrapped(f"{printable(path)}: {sound}", asked_width()))
+    print(wrapped(f"{printable(path)}: {Language(system.language).say(sound)}", asked_width()))
     return Exit.OK
 
 
