@@ -153,7 +153,7 @@ loads:
     [
         ("theta: 0, r: L", "with r = m*g/k + L it does"),  # k (r - L) = m g
         ("theta: pi, r: L", "with r = L - m*g/k it does"),
-        ("theta: pi", "with r = L - m*g/k it does"),
+        ("theta: 0", "with r = m*g/k + L it does"),
         ("theta: pi/2, r: L", ""),  # no length of the spring holds it there
         ("theta: 1, r: L", ""),
     ],
