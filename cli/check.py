@@ -59,14 +59,19 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
         sys.exit(Exit.BAD_INPUT)
     if output_format != "text":
         sys.exit(_for_programs(paths, output_format))
-    worst: int = Exit.OK
+    several, codes = len(paths) > 1, dict.fromkeys(paths, Exit.OK)
     for path in paths:
         try:
-            worst = max(worst, _check(path))
+            codes[path] = _check(path, brief=several)
         except Exception as error:  # a defect of ours must not cost the rest of the batch
             defect(error, path)
-            worst = max(worst, Exit.FAILED)
-    sys.exit(worst)
+            codes[path] = Exit.FAILED
+    wrong = [printable(path) for path, code in codes.items() if code != Exit.OK]
+    if several and wrong:
+        text = "[[count]] descriptions: [[good]] ok, not ok: [[wrong]]"
+        told = Message(text, count=len(paths), good=len(paths) - len(wrong), wrong=", ".join(wrong))
+        print(wrapped(told, asked_width()))
+    sys.exit(max(codes.values()))
 
 
 def _for_programs(paths: Sequence[Path], output_format: str) -> int:
@@ -93,12 +98,15 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
     return worst
 
 
-def _check(path: Path) -> int:
+def _check(path: Path, brief: bool) -> Exit:
+    """What is said of a description; ``brief``: one of many, whose size nobody asks for."""
     system = read_description(path)
     if system is None:
         return Exit.BAD_INPUT
-    sound = Language(system.language).say(Message("ok: [[name]]; [[size]]", name=system.name, size=_size(system)))
-    print(wrapped(f"{printable(path)}: {sound}", asked_width()))
+    sound = Message("ok: [[name]]; [[size]]", name=system.name, size=_size(system))
+    if brief:
+        sound = Message("ok: [[name]]", name=system.name)
+    print(wrapped(f"{printable(path)}: {Language(system.language).say(sound)}", asked_width()))
     return Exit.OK
 
 

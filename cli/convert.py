@@ -37,7 +37,7 @@ from mbsym_cli.options import Options
     help="Of a robot: 1.5708 is pi/2 (snap, the default; it is told), or stays the number that it is (exact).",
 )
 @click.option("--scale", metavar="LIST", help="In dimensionless variables: x=L*x1,t=tau/omega0,k=m*omega0**2*kappa.")
-@click.option("--out", type=OutPath(path_type=Path, dir_okay=False), help="Default: standard output.")
+@click.option("-o", "--out", type=OutPath(path_type=Path, dir_okay=False), help="Default: standard output.")
 def command(
     file: Path,
     spelling: str | None,

@@ -144,8 +144,12 @@ class LazyGroup(click.Group):
             from difflib import get_close_matches
 
             from mbsym.expressions.message import Message
+            from mbsym.report.formulas_by_name import named_by
 
-            near = get_close_matches(name, COMMANDS, 1)
+            near, meant = get_close_matches(name, COMMANDS, 1), named_by(name)
+            if meant:
+                text = "there is no command '[[name]]'; 'mbsym show FILE [[shown]]' prints it"
+                context.fail(Message(text, name=name, shown=" ".join(meant)))
             if near:
                 context.fail(
                     Message("there is no command '[[name]]'; did you mean '[[near]]'?", name=name, near=near[0])

@@ -180,10 +180,13 @@ def _said(row: Row, say: Callable[[str], str]) -> str:
     if missing:
         parts.append(Message("no result: [[problems]]", problems=", ".join(missing)))
     parts += [joined((Message("SELF-CHECK FAILED"), check.name), ": ") for check in row.checks if check.failed]
-    refuted = sum(claim.word == "refuted" for claim in row.claims)
-    if refuted:
+    if refuted := _refuted(row):
         parts.append(Message("claims refuted: [[count]]", count=refuted))
     return "; ".join(map(say, parts))
+
+
+def _refuted(row: Row) -> int:
+    return sum(claim.word == "refuted" for claim in row.claims)
 
 
 def complaints(row: Row) -> list[str]:
@@ -211,5 +214,7 @@ def totals(summary: Summary) -> Message:
             parts += [Message(NUMBER_OF, count=cached, outcome=UP_TO_DATE)] if cached else []
         else:
             parts.append(Message(NUMBER_OF, count=count, outcome=worded(word)))
+    refuted = sum(map(_refuted, summary.rows))
+    parts += [Message("claims refuted: [[count]]", count=refuted)] if refuted else []
     what = joined(parts, ", ") if parts else Message("nothing to do")
     return joined((Counted(len(summary.rows), "system"), what), ": ")

@@ -17,11 +17,13 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message, joined
-from mbsym.expressions.tree import Call, Expression, Name, Number, Operation, children, names, number, walk
-from mbsym.formulas.formula import Column, column
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints
+from mbsym.expressions.tree import ZERO, Call, Expression, Name, Number, Operation, children, names, number, walk
+from mbsym.formulas.formula import Column, Formula, column
 from mbsym.mechanics import newton_euler
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import is_steady, turning
+from mbsym.mechanics.motion import is_steady, motion_values, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import MotionEntry, Relation, System
@@ -37,6 +39,9 @@ if TYPE_CHECKING:
 
 #: What stands for the description in commands that are advised.
 FILE = "FILE"
+
+#: Of so many terms is the value of a coordinate that a hint tells.
+SHORT = 6
 
 #: A hint lists so many coordinates; of more it shows one.
 MOST_LISTED = 12
@@ -158,7 +163,9 @@ def first_approximation(analysis: Analysis) -> Linearisation:
         conditions = (Message("$[[left]] = 0$", left=item) for item in analysis.equilibrium.impossible)
         never = joined(conditions, ", ")
         reason = Message("the given motion does not exist: [[never]] is impossible", never=never)
-        raise Unavailable("motion", NoResult(reason, "", "no such motion", "impossible-motion"))
+        near = _motion_beside(analysis)
+        hint = "" if near is None else Message("with $[[name]] = [[value]]$ it does", name=near[0], value=near[1])
+        raise Unavailable("motion", NoResult(reason, hint, "no such motion", "impossible-motion"))
     if analysis.equilibrium.unsteady:
         varying = ", ".join(analysis.equilibrium.unsteady)
         reason = Message("on the given motion the equations, in symbols, still vary with [[varying]]", varying=varying)
@@ -169,6 +176,37 @@ def first_approximation(analysis: Analysis) -> Linearisation:
 
         return by_projection(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
     return linearisation.by_quadratisation(analysis.parameters_scene, analysis.expanded, analysis.equilibrium)
+
+
+def _motion_beside(analysis: Analysis) -> tuple[str, Formula] | None:
+    """A coordinate that rests, and where it has to for the motion to exist, all others as they are given.
+
+    f_i + df_i/dq_j delta = 0 for all i, one step of Newton's method, which is right where f is linear in q_j; whether
+    it is the equations of the motion that is found tell.
+    """
+    system, ring = analysis.system, analysis.ring
+    if system.constraints or system.speeds or system.prescribed:
+        return None
+    jets, given = newton_euler.residuals(analysis.expanded), motion_values(system)
+    for j, name in enumerate(system.coordinates):
+        value, rate = given[name]
+        slopes = [(jets[x].value, jets[x].first.get(j, ring.zero)) for x in system.coordinates]
+        steps = [(f, slope) for f, slope in slopes if not ring.vanishes(f)]
+        if rate != ZERO or len(steps) != 1 or ring.vanishes(steps[0][1]):
+            continue
+        f, slope = steps[0]
+        at = ring.reduce(analysis.parameters_scene.lower(value) - ring.times(f, ring.reciprocal(slope)))
+        found = Formula(ring, at)
+        expression = parse_expression(str(found), Complaints()) if found.terms <= SHORT else None
+        if expression is None:
+            continue
+        motion = (*(x for x in system.motion if x.coordinate != name), MotionEntry(name, expression, ZERO))
+        try:
+            if type(analysis)(replace(system, motion=motion), ()).equilibrium.satisfied:
+                return name, found
+        except (Failure, Unavailable):
+            continue
+    return None
 
 
 def autonomous(analysis: Analysis) -> Linearisation:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any, cast
 
-from mbsym.algebra.factors import content, irreducible_factors
+from mbsym.algebra.factors import content, irreducible_factors, rational_ratio
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import added, components, cramer, determinant
 from mbsym.algebra.ring import Polynomial, Ring
@@ -22,7 +22,7 @@ from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
 from mbsym.model.system import INERTIAL
 from mbsym.problems.constraints.motion import dependent_velocities
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
-from mbsym.report.conditions import Shown, Statement, is_letter, label_meanings, statements
+from mbsym.report.conditions import Labels, Shown, Statement, cases, is_letter, label_meanings, statements
 from mbsym.report.content import Number
 from mbsym.report.sections.equations import balances
 
@@ -40,6 +40,9 @@ LANGUAGES = ("text", "latex", "wolfram", "python")
 
 #: Wider matrices and columns are written entry by entry for people.
 WIDEST = 80
+
+#: Shorter words do not begin longer ones for a reason.
+SHORTEST = 3
 
 #: Accelerations of more coordinates that the mass matrix couples are left to programs: their formulas fill pages.
 MOST_SOLVED = 4
@@ -228,6 +231,25 @@ def _matrix(name: str) -> Callable[[Analysis], Iterator[Line]]:
     return lines
 
 
+def _state_space(analysis: Analysis) -> Iterator[Line]:
+    """A of x' = A x; with inputs v or outputs y also B, C, D of x' = A x + B v, y = C x + D v, all deviations.
+
+    In speeds and positions where there is such a form, else in coordinates and velocities.
+    """
+    state = analysis.optional("first_order") if analysis.system.speeds else None
+    if state is not None:
+        yield Line("A", state.A, remark=Message("x' = A x of x = ([[states]])", states=", ".join(state.names)))
+        return
+    form = analysis.state_space
+    yield Line("A", form.A, remark=Message("x' = A x of x = ([[states]])", states=", ".join(form.states)))
+    if form.inputs:
+        yield Line("B", form.B, remark=Message("x' = A x + B v of v = ([[inputs]])", inputs=", ".join(form.inputs)))
+    if form.outputs:
+        yield Line("C", form.C, remark=Message("C x + D v are ([[outputs]])", outputs=", ".join(form.outputs)))
+    if form.inputs and form.outputs:
+        yield Line("D", form.D)
+
+
 def _characteristic(analysis: Analysis) -> Iterator[Line]:
     for part in analysis.stability.subsystems:
         text = "of [[names]]: coefficients of the powers of lambda, from the constant one on"
@@ -274,11 +296,22 @@ def _freed(ring: Ring, known: Signs, row: Iterable[tuple[Polynomial, ...]]) -> l
 
 
 def _conditions(analysis: Analysis) -> Iterator[Line]:
-    """What ``statements`` lists, with what each is needed for; of a long one first the letters that it is told in."""
+    """What ``statements`` lists, with what each is needed for; of a long one first the letters that it is told in.
+
+    In front of it what verdicts presume, and the first case, where its conditions are others: sufficient ones.
+    """
+    if analysis.system.inputs:
+        yield Line("", Message("while the inputs keep their values on the unperturbed motion"))
+    own = analysis.equilibrium.conditions
+    presumed = analysis.stability.presumed
+    further = (x for x in presumed if all(rational_ratio(x.polynomial, y.polynomial) is None for y in own))
+    for x in (*own, *further):
+        yield Line("", x, remark=Message("provided that"))
     for part in analysis.stability.subsystems:
         of = ", ".join(part.coordinates)
         labels = label_meanings(part.ring, part.theory.requirements)
         items = list(statements(part.ring, part.theory.requirements, told=labels))
+        yield from _of_other_conditions(part, labels, items, of)
         text = "conditions: [[wanted]]"
         if not items:
             text = "conditions: [[wanted]]; none was found"
@@ -293,6 +326,27 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
                 yield from (Line(letter, value) for letter, value in letters if not is_letter(value, str(letter)))
             yield Line("", formula, item.relation, _remark(item, of))
             shown.show(item)
+
+
+def _of_other_conditions(
+    part: SubsystemStability, labels: Labels, items: Sequence[Statement], of: str
+) -> Iterator[Line]:
+    """The first case, if it needs all of some conditions, one of which is none of the ``items``, nor one reversed."""
+    listed = Shown()
+    for item in items:
+        listed.show(item)
+    told = (x for x in cases(part.ring, part.theory.cases, labels, part.theory.uncovered) if x.conditional)
+    case = next(told, None)  # the others are about what is left of it
+    if case is None or case.any_of or all(map(listed.reference, case.all_of)):
+        return
+    if any(item.formula is None for item in case.all_of):
+        return
+    verdict = Message("[[verdict]], if all of these hold:", verdict=worded(case.word.value))
+    if case.theorems:
+        text = "[[verdict]] ([[theorems]]), if all of these hold:"
+        verdict = Message(text, verdict=worded(case.word.value), theorems=joined(map(worded, case.theorems), ", "))
+    yield Line("", verdict, "", of)
+    yield from (Line("", cast(Formula, item.formula), item.relation) for item in case.all_of)
 
 
 def _remark(item: Statement, of: str) -> str:
@@ -317,7 +371,7 @@ NAMES: Mapping[str, tuple[str, Callable[[Analysis], Iterator[Line]]]] = {
     "equations": ("the equations of motion, M q'' - f = 0", _equations),
     "accelerations": ("the equations solved for q''", _accelerations),
     "T": ("the kinetic energy", lambda x: iter([Line("T", x.energy.kinetic_energy)])),
-    "U": ("the force function", lambda x: iter([Line("U", x.energy.force_function)])),
+    "U": ("the force function, minus the potential energy", lambda x: iter([Line("U", x.energy.force_function)])),
     "L": ("the Lagrangian, T + U", _lagrangian),
     "M": ("the mass matrix", lambda x: iter([Line("M", x.equations.mass_matrix)])),
     "f": ("the right-hand sides of M q'' = f", lambda x: iter([Line("f", x.equations.forcing)])),
@@ -326,11 +380,12 @@ NAMES: Mapping[str, tuple[str, Callable[[Analysis], Iterator[Line]]]] = {
     "constraints": ("the constraints in velocities", _constraints),
     "motion": ("when the unperturbed motion satisfies the equations", _motion),
     "M0": ("the mass matrix of the first approximation", _matrix("M")),
-    "D": ("its dissipative matrix", _matrix("D")),
+    "D": ("its dissipative matrix, of damping", _matrix("D")),
     "G": ("its gyroscopic matrix", _matrix("G")),
-    "K": ("its potential matrix", _matrix("K")),
+    "K": ("its potential matrix, of stiffness", _matrix("K")),
     "N": ("its circulatory matrix", _matrix("N")),
     "B": ("its matrix of inputs", _matrix("B")),
+    "A": ("its state space, the linear model x' = A x + B v: Jacobian matrix A", _state_space),
     "characteristic": ("the characteristic polynomials", _characteristic),
     "determinants": ("whose zeros are the roots lambda, in the description's notation", _determinants),
     "conditions": ("the conditions of stability", _conditions),
@@ -398,6 +453,21 @@ def known_names(analysis: Analysis) -> list[str]:
 def given_names(analysis: Analysis) -> tuple[str, ...]:
     """What may be asked for before anything is derived."""
     return (*NAMES, *(body.name for body in analysis.system.bodies))
+
+
+def named_by(words: str) -> tuple[str, ...]:
+    """Of ``NAMES`` those whose meaning has all these words, or words that begin as they do: stiffness-matrix is K."""
+    wanted = re.findall(r"[^\W\d_]{3,}", words.casefold())
+    return tuple(
+        name
+        for name, (meaning, _) in NAMES.items()
+        if wanted and all(any(_alike(x, y) for y in re.findall(r"\w+", f"{name} {meaning}".casefold())) for x in wanted)
+    )
+
+
+def _alike(word: str, other: str) -> bool:
+    """Whether they are forms of one word: linearise and linear."""
+    return min(len(word), len(other)) > SHORTEST and (word.startswith(other) or other.startswith(word))
 
 
 def lines(analysis: Analysis, name: str) -> Iterator[Line]:

@@ -121,10 +121,16 @@ class Results:
             yield Intermediates(told.system.told, new)
 
     def missing(self, number: int) -> Iterator[Block]:
-        """Why a problem has no result, if it has none."""
+        """Why a problem has no result, if it has none; of a reason that an earlier one has where it stands."""
         failure = self.failures.get(number)
-        if failure is not None:
+        if failure is None:
+            return
+        first = next(k for k in sorted(self.failures) if self.failures[k] == failure)
+        if first == number:
             yield no_result(failure)
+        else:
+            why = say("as in problem [[number]]", number=str(first))
+            yield Paragraph((Said("No result"), ": ", why, "."), missing=True)
 
 
 def no_result(failure: NoResult) -> Paragraph:

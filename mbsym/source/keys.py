@@ -699,6 +699,8 @@ DESCRIPTION = Record(SYSTEM, "A description", one_of=("bodies", "linear system")
 #: Other spellings of keys, and of words.
 ALIASES = {
     "mass center": "mass centre",
+    "center of mass": "mass centre",
+    "centre of mass": "mass centre",
     "center": "centre",
     "generalised force": "generalized force",
     "inertia at": "inertia about",

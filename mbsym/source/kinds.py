@@ -32,9 +32,10 @@ _GROUND = "ground"
 class Section:
     """A list of items of known kinds.
 
-    ``meant``: other words and the kinds that they mean; ``example`` shows how an item is written; ``checks`` say what
-    else is wrong with one and answer whether it is kept; ``hints`` of a value that is no mapping; ``others`` complain
-    where the value is that of another kind, and answer whether it is.
+    ``meant``: other words and the kinds that they mean; ``example`` shows how an item is written, ``bare`` how one is
+    of which only the text stands there; ``checks`` say what else is wrong with one and answer whether it is kept;
+    ``hints`` of a value that is no mapping; ``others`` complain where the value is that of another kind, and answer
+    whether it is.
     """
 
     what: str
@@ -44,6 +45,7 @@ class Section:
     checks: Mapping[str, Callable[[Item, Any], bool]]
     hints: Mapping[str, Callable[[Node], str]] = field(default_factory=dict)
     others: Mapping[str, Callable[[Item], bool]] = field(default_factory=dict)
+    bare: Callable[[str], str | None] | None = None
 
     def read(self, node: Node | None, bodies: list[str], reading: Reading) -> tuple[Any, ...]:
         """Every item, in its order."""
@@ -54,7 +56,10 @@ class Section:
     def _item(self, node: Node, bodies: list[str], reading: Reading) -> Any | None:
         if not isinstance(node, placed.Mapping) or len(node.entries) != 1:
             message = Message("a [[what]] is one key, its kind, with its data", what=worded(self.what))
-            reading.error("wrong-shape", message, node.span, Message("write '- [[example]]'", example=self.example))
+            bare = isinstance(node, Scalar) and self.bare is not None and self.bare(node.text)
+            reading.error(
+                "wrong-shape", message, node.span, Message("write '- [[example]]'", example=bare or self.example)
+            )
             return None
         entry = node.entries[0]
         name = self._kind(entry.key, reading)
@@ -157,7 +162,8 @@ class Item:
                     "missing-key", "[[what]] has neither [[names]]", fields.span, what=worded(fields.what), names=names
                 )
             return None
-        fields.exclude(matching[-1].keys[0], (key for key in self.kind.keys if key not in matching[-1].keys))
+        fitting = matching[-1].keys
+        fields.exclude(fitting[0], (key for key in self.kind.keys if key not in fitting), fitting)
         return matching[-1]
 
     def _read_key(self, fields: Fields, name: str, key: grammar.Key) -> None:

@@ -219,6 +219,15 @@ def _rolling(item: Item, made: Rolling) -> bool:
     return True
 
 
+def _as_equation(text: str) -> str | None:
+    """The constraint that a bare formula or equation is: one in coordinates, or one in velocities."""
+    sides = text.split("=")
+    if len(text) > MAX_SHOWN or len(sides) > 2 or any(parse_expression(x, Complaints()) is None for x in sides):
+        return None
+    kind = "velocity" if "_dot" in text else "relation"
+    return f"{kind}: {text}" if len(sides) == 2 else f"{kind}: {text} = 0"
+
+
 _constraints_SECTION = Section(
     "constraint",
     CONSTRAINTS,
@@ -232,4 +241,5 @@ _constraints_SECTION = Section(
         "rolling": _rolling,
         "velocity": _velocity,
     },
+    bare=_as_equation,
 )

@@ -476,9 +476,11 @@ class Fields:
         node = self.require(key, hint)
         return ZERO if node is None else self.reading.expression(node, allowed)
 
-    def exclude(self, key: str, others: Iterable[str]) -> None:
-        """Complain about keys that make no sense beside another one."""
+    def exclude(self, key: str, others: Iterable[str], fitting: Iterable[str] = ()) -> None:
+        """Complain about keys that make no sense beside another one, with those that are ``fitting``."""
+        rest = [x for x in fitting if x not in self.entries]
+        hint = Message("beside it may stand: [[keys]]", keys=", ".join(map(repr, rest))) if rest else None
         for other in others:
             if other in self.entries:
                 message = Message("[[other]] does not go with [[key]]", other=ascii_safe(other), key=ascii_safe(key))
-                self.reading.error("conflicting-keys", message, self.key_span(other))
+                self.reading.error("conflicting-keys", message, self.key_span(other), hint)

@@ -50,7 +50,7 @@ class Request:
     accelerations   solved for q''             M f           of M q'' = f
     coriolis        c of M q'' + c + g = tau   gravity       g, of weights alone
     motion          does it satisfy them       constraints   in velocities
-    M0 D G K N B    first approximation
+    M0 D G K N B    first approximation       A               x' = A x
     characteristic  polynomials                determinants  and what they come from
     conditions      of stability               integrals     first integrals
     eigenvalues     at the given values
@@ -223,9 +223,13 @@ def _source(context: Asked, request: Request, watch: Watch) -> _Source:
 def _unknown(name: str, known: Sequence[str]) -> Unfit:
     from difflib import get_close_matches
 
-    near = get_close_matches(name, known, 1)
+    from mbsym.report.formulas_by_name import named_by
+
+    near, meant = get_close_matches(name, known, 1), named_by(name)
     hint = Message("there are [[names]]", names=", ".join(known))
-    if near:
+    if meant:
+        hint = Message("by its name here: [[names]]", names=", ".join(meant))
+    elif near:
         hint = Message("did you mean '[[other]]'?", other=near[0])
     return Unfit("NAME", "unknown-name", Message("nothing is called '[[name]]' here", name=name), hint)
 

@@ -232,7 +232,8 @@ def test_the_summary_keeps_to_its_schema(tmp_path: Path) -> None:
     checker = jsonschema.Draft202012Validator(schema())
     checker.check_schema(schema())
     arguments = ("in", "-o", "out", "--format", "json,c", "--jobs", "1", "--fail-fast")
-    batch(*arguments, cwd=tmp_path, code=2)
+    told = batch(*arguments, cwd=tmp_path, code=2).stdout
+    assert "4 systems: 2 derived, 1 description errors, 1 skipped, claims refuted: 1; " in told
     found = summary(tmp_path / "out")
     checker.validate(found)
     assert outcomes(tmp_path / "out") == {"a": "derived", "b": "derived", "c": "description errors", "d": "skipped"}

@@ -71,6 +71,8 @@ def test_a_broken_description_in_a_folder_is_not_passed_over(tmp_path: Path) -> 
     done = invoked("check", tmp_path, code=2)
     assert "bad.yaml" in done.stderr
     assert "good.yaml: ok" in done.stdout
+    assert " ".join(done.stdout.split()).endswith(f"2 descriptions: 1 ok, not ok: {tmp_path / 'bad.yaml'}")
+    assert "descriptions" not in invoked("check", tmp_path / "good.yaml", code=0).stdout
 
 
 @pytest.mark.parametrize(

@@ -152,6 +152,34 @@ def test_unknown_names_and_missing_results(tmp_path: Path) -> None:
     assert show("simple-pendulum", "constraints").exit_code == 1
 
 
+def test_the_linear_model_by_its_book_name() -> None:
+    """x' = A x: theta'' = -(m l g theta + b theta')/(m l^2 + J); of a pole on a cart B, C and D, too."""
+    told = show("simple-pendulum", "A", code=0).stdout.splitlines()
+    assert told[0] == "# x' = A x of x = (theta, theta_dot)"
+    rows = [line.partition("[")[2].split() for line in told[1:]]
+    assert [" ".join(row) for row in rows] == ["0 1 ]", "-m l g/(m l^2 + J) -b/(m l^2 + J) ]"]
+    pole = [line for line in show("cart-pole", "A", "--python", code=0).stdout.splitlines() if line[0] != "#"]
+    assert [line.partition(" = ")[0] for line in pole] == ["A", "B", "C", "D"]
+    assert pole[2:] == ["C = [[1, 0, 0, 0], [0, 1, 0, 0]]", "D = [[0], [0]]"]
+    # A disc rolls upright with lean'' = (4 g/(5 r) - 12 w^2/5) lean: stable where w^2 > g/(3 r) (Neimark & Fufaev).
+    disc = next(lines(derived(SHIPPED / "rolling-disc-speeds.yaml"), "A"))
+    at = {"g": 7, "r": 3, "w": Fraction(5, 2)}
+    lean, yaw = 6, 5
+    falls, turns, follows = (_number(disc.value[place], at) for place in ((lean, 3), (lean, yaw), (yaw, lean)))
+    assert falls + turns * follows == Fraction(4 * 7, 15) - Fraction(12, 5) * Fraction(25, 4)
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [("mass-matrix", "M, M0"), ("stiffness", "K"), ("Lagrangian", "L"), ("linearise", "A"), ("state_space", "A")],
+)
+def test_what_goes_by_another_name_is_found_by_what_it_is(words: str, names: str) -> None:
+    assert f"by its name here: {names}\n" in show("simple-pendulum", words, code=2).stderr
+    told = invoked(words, "x.yaml", code=2).output
+    assert f"'mbsym show FILE {names.replace(',', '')}' prints it" in told
+    assert "nonlinear" not in told
+
+
 def test_python_has_them_too() -> None:
     pendulum = mbsym.load(SHIPPED / "simple-pendulum.yaml")
     (equation,) = pendulum.equations.equalities(pendulum.system.coordinates)
@@ -182,6 +210,18 @@ def test_words_and_roots_may_be_pasted(tmp_path: Path) -> None:
     assert eval(shown["python"].splitlines()[1]) == (-1e-9 + 1j, -1e-9 - 1j)
     for line in shown["latex"].splitlines():
         assert line.startswith("%") or "\\text" not in line
+
+
+def test_conditions_that_suffice_stand_before_those_that_are_needed() -> None:
+    """Gutnik & Sarychev: B - A + h > 0 and 4 (B - C) + h > 0; needed is only their product beside others."""
+    told = show("orbital-gyrostat", "conditions", code=0).stdout.splitlines()
+    assert told[:4] == ["# provided that", "h1 = 0", "# provided that", "h3 = 0"]
+    at = told.index("stable (Routh), if all of these hold:")
+    assert told[at - 1 : at + 4] == ["# psi, phi", told[at], "B - A + h > 0", "4 B - 4 C + h > 0", "# psi, phi"]
+    assert told[at + 4].startswith("conditions: ")
+    # Pitch needs what suffices, which is told once; where nothing suffices nothing is said to.
+    assert told.count("A - C > 0") == 1
+    assert "if all of these hold" not in show("ziegler", "conditions", code=0).stdout
 
 
 def test_determinants_are_those_that_a_paper_prints() -> None:

@@ -31,7 +31,9 @@ from mbsym.numerics.scenario import exact
 from mbsym.problems.relative_equilibria.equilibria import CERTIFIED, EXACT, Equilibria, RelativeEquilibrium, equilibria
 from mbsym.problems.stability import parameter_values
 from mbsym.problems.stability.enclosed import enclosed_verdict
+from mbsym.report.content import Table
 from mbsym.studies.equilibria import STUDY
+from mbsym.studies.equilibria.listed import lines
 from mbsym_cli.study import command_of
 
 
@@ -491,7 +493,7 @@ def expected_word(along: float, outward: float, normal: float) -> str:
     ("moments", "stabilised"), [(("12", "9", "15"), 0), (("1", "0.99", "0.96"), 4), (("2", "2.5", "1"), 0)]
 )
 def test_rigid_satellite_has_24_equilibria(moments: tuple[str, str, str], stabilised: int) -> None:
-    _, found = at("gravity-gradient", **dict(zip("ABC", moments, strict=True)))
+    analysis, found = at("gravity-gradient", **dict(zip("ABC", moments, strict=True)))
     count = reference("gravity_gradient")["reference"]["equilibria"]["triaxial"]
     assert count == 24
     assert len(found.equilibria) == count
@@ -512,6 +514,13 @@ def test_rigid_satellite_has_24_equilibria(moments: tuple[str, str, str], stabil
         for s in product((1, -1), repeat=3)
     )
     assert seen == {m for m in signed if round(np.linalg.det(np.array(m).reshape(3, 3))) == 1}
+    # Those at which the angles are singular stand together, and no column is there for them alone.
+    own, others = (block for block in lines(analysis.system, found) if isinstance(block, Table))
+    assert len(own.columns) == len(others.columns)
+    assert sorted(int(row[0][0]) for row in (*own.rows, *others.rows)) == list(range(1, 25))
+    assert [int(row[0][0]) for row in others.rows] == [
+        number for number, one in enumerate(found.equilibria, 1) if one.coordinates_of
+    ]
     verdicts = Counter(one.verdict.word for one in found.equilibria)
     assert verdicts["stable"] == 4
     assert verdicts["gyroscopically stabilised only"] == stabilised

@@ -136,6 +136,39 @@ def test_of_a_motion_that_cannot_be_nothing_else_is_said(stage: str) -> None:
         getattr(mbsym.loads(DRAGGED), stage)
 
 
+SPRING = """
+mbsym: 1
+name: Spring pendulum
+parameters: {m: positive, k: positive, L: positive, g: positive}
+bodies: [{name: bob, attached to: 0, mass: m, coordinates: [r, theta],
+          connection point: [r*sin(theta), -r*cos(theta), 0]}]
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+  - spring: {coordinate: r, stiffness: k, rest: L}
+"""
+
+
+@pytest.mark.parametrize(
+    ("motion", "hint"),
+    [
+        ("theta: 0, r: L", "with r = m*g/k + L it does"),  # k (r - L) = m g
+        ("theta: pi, r: L", "with r = L - m*g/k it does"),
+        ("theta: 0", "with r = m*g/k + L it does"),
+        ("theta: pi/2, r: L", ""),  # no length of the spring holds it there
+        ("theta: 1, r: L", ""),
+    ],
+)
+def test_a_motion_that_cannot_be_is_told_with_one_beside_it_that_is(motion: str, hint: str) -> None:
+    analysis = mbsym.loads(f"{SPRING}motion: {{{motion}}}\n")
+    failure = analysis.stage(5).failure
+    assert failure is not None
+    assert failure.hint.replace("$", "") == hint
+    # Why is told by the first problem that has no result, and only there.
+    both, last = results(analysis, (5, 6)), results(analysis, (6,))
+    reason = str(failure.reason)
+    assert [reason in str([*known.missing(k)]) for known, k in ((both, 5), (both, 6), (last, 6))] == [True, False, True]
+
+
 def test_formulas_in_reasons_are_set_as_formulas() -> None:
     """-c*v is Python's; a report multiplies without a sign, and a reason that crosses processes keeps its English."""
     analysis = mbsym.loads(DRAGGED)

@@ -242,6 +242,15 @@ def test_the_command_tells_what_it_leaves_out_and_writes_what_runs(tmp_path: Pat
     assert not (tmp_path / "no.yaml").exists()
 
 
+def test_a_tensor_that_is_left_out_is_told_with_its_link(tmp_path: Path) -> None:
+    """A sign: a turn about the first axis would have a negative energy."""
+    file, out = tmp_path / "p.urdf", tmp_path / "p.yaml"
+    file.write_text(PENDULUM.replace('ixx="0.1"', 'ixx="-0.1"'), encoding="utf-8")
+    done = invoked("convert", file, "-o", out, code=0)
+    assert "tensor of inertia of link 'rod <1>' with which" in " ".join(done.stderr.split())
+    assert invoked("check", out).exit_code == 0
+
+
 def test_what_is_a_robot() -> None:
     assert is_robot('<?xml version="1.0"?>\n<!-- made by hand -->\n<robot name="x"/>')
     assert is_robot("<mujoco model='x'/>")

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
+from mbsym.expressions.safe import quoted
 from mbsym.source.robots.geoms import of_quaternion
 from mbsym.source.robots.reader import (
     NO_TENSOR,
@@ -207,7 +208,7 @@ def _link(name: str, element: Element, joint: Element | None, named: Mapping[str
     inertial = element.first("inertial")
     if element.first("origin") is not None:  # some robots that are sold have one; URDF readers pass over it
         reader.leave_out("place of a link (<origin> in <link>)")
-    matter = () if inertial is None else (_inertial(inertial, reader),)
+    matter = () if inertial is None else (_inertial(inertial, reader, name),)
     shapes = tuple(shape for visual in element.all("visual") if (shape := _shape(visual, reader)) is not None)
     if joint is None:
         return Link(name, GROUND, inertials=matter, shapes=shapes, span=element.span)
@@ -302,7 +303,7 @@ def _decimal(value: Fraction) -> str:
     return number(str(Decimal(value.numerator) / Decimal(value.denominator)))
 
 
-def _inertial(element: Element, reader: Reader) -> Inertial:
+def _inertial(element: Element, reader: Reader, link: str) -> Inertial:
     """Tensors with which a kinetic energy could be negative (some are -5e-20) are taken for zero."""
     mass, tensor = element.first("mass"), element.first("inertia")
     centre, turned = _origin(element, reader)
@@ -310,7 +311,7 @@ def _inertial(element: Element, reader: Reader) -> Inertial:
         reader.leave_out(NO_TENSOR)
     xx, xy, xz, yy, yz, zz = ("0",) * 6 if tensor is None else (reader.number(tensor, part) for part in MOMENTS)
     if not is_nonnegative(*map(Fraction, (xx, xy, xz, yy, yz, zz))):
-        reader.leave_out("tensor of inertia with which a kinetic energy could be negative")
+        reader.leave_out(f"tensor of inertia of link {quoted(link)} with which a kinetic energy could be negative")
         xx = xy = xz = yy = yz = zz = "0"
     elif not is_of_a_body(*map(Fraction, (xx, xy, xz, yy, yz, zz))):
         reader.leave_out("the triangle inequality of a tensor of inertia (no body has it; it is taken as it stands)")

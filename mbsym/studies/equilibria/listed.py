@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from mbsym.expressions.message import Counted, Message, joined
 from mbsym.expressions.tree import names
@@ -32,7 +32,7 @@ def lines(system: System, equilibria: Equilibria, permanent: PermanentRotations 
     """How many there are and how far the list is complete, then all that was found."""
     yield from _summary(equilibria)
     if equilibria.equilibria:
-        yield _table(system, equilibria.equilibria)
+        yield from _tables(system, equilibria.equilibria)
         for number, one in enumerate(equilibria.equilibria, 1):
             if sampled := [x for x in one.verdict.reasons if x.code in _SAMPLED]:
                 yield paragraph(f"{number}: ", explanation(sampled))
@@ -45,7 +45,7 @@ def lines(system: System, equilibria: Equilibria, permanent: PermanentRotations 
         text = "[[solutions]], the coordinates are singular there: equilibria or not is undecided"
         solutions = Counted(len(equilibria.singular), "more solution", "more solutions")
         yield paragraph(Strong(Message(text, solutions=solutions)))
-        yield _table(system, equilibria.singular, judged=False)
+        yield from _tables(system, equilibria.singular, judged=False)
     if equilibria.beyond:
         lengths = ", ".join(
             f"{name} < 0" for name in dict.fromkeys(x for equilibrium in equilibria.beyond for x in equilibrium.beyond)
@@ -57,31 +57,40 @@ def lines(system: System, equilibria: Equilibria, permanent: PermanentRotations 
         )
         solutions = Counted(len(equilibria.beyond), "more solution", "more solutions")
         yield paragraph(Strong(Message(text, solutions=solutions, lengths=lengths)))
-        yield _table(system, equilibria.beyond, judged=False)
+        yield from _tables(system, equilibria.beyond, judged=False)
     for number, family in enumerate(equilibria.families, 1):
         yield from _family(system, number, family)
     if permanent is not None:
         yield from _permanent(permanent)
 
 
-def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Table:
+def _tables(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Iterator[Block]:
+    """A table for the coordinates of the description, then one for each other set of angles, whose numbers go on."""
+    for others in dict.fromkeys(["", *(x.coordinates_of for x in listed)]):
+        rows = {number: x for number, x in enumerate(listed, 1) if x.coordinates_of == others}
+        if others:
+            text = "where these angles are singular, in others, about the axes of [[body]]:"
+            yield paragraph(Message(text, body=others))
+        if rows:
+            yield _table(system, rows, judged)
+
+
+def _table(system: System, rows_by_number: Mapping[int, RelativeEquilibrium], judged: bool) -> Table:
     """A row each; columns that would be empty are left out."""
+    listed = rows_by_number.values()
     every = (*system.coordinates, *system.velocities)
     names = [name for name in every if any(_has(x, name) for x in listed)]
-    others = any(x.coordinates_of for x in listed)
     boxes = any(x.proof != "exact" for x in listed)
     columns = [column("", right=True), *(column(labelled(name, unit_of(system, name)), right=True) for name in names)]
     columns += [column(Message("stability"), fold=True), column(Message("theorem"), fold=True)] if judged else []
     columns += [column(Message("proof"))] if boxes else []
-    columns += [column(Message("angles of"))] if others else []
     rows = []
-    for number, equilibrium in enumerate(listed, 1):
+    for number, equilibrium in rows_by_number.items():
         cells: list[Inline] = [str(number), *(_cell(equilibrium, name) for name in names)]
         if judged:
             word = equilibrium.verdict.word
             cells += [Graded(Message(word), _grade(word)), joined(map(Message, equilibrium.verdict.theorems), ", ")]
         cells += [Message(equilibrium.proof)] if boxes else []
-        cells += [equilibrium.coordinates_of] if others else []
         rows.append(cells)
     return aligned(columns, rows)
 
@@ -182,7 +191,7 @@ def _summary(equilibria: Equilibria) -> Iterator[Block]:
     if twice:
         text = "counted as configurations: the coordinates describe one in [[ways]] ways"
         yield paragraph(Message(text, ways="/".join(map(str, twice))))
-    if equilibria.charts > 1:
+    if equilibria.charts > 1 and not any(equilibrium.coordinates_of for equilibrium in equilibria.equilibria):
         text = "singular angles were replaced by others ([[count]] sets of angles)"
         yield paragraph(Message(text, count=equilibria.charts))
 
