@@ -696,7 +696,7 @@ def minimal_polynomial(value: Univariate, modulus: Univariate) -> Univariate:
 
 
 def by_square_root(minimal: Univariate, value: Any) -> Expression | None:
-    """The root of a polynomial of degree 1 or 2 that is in the ball ``value``; None of others.
+    """The root of a polynomial of degree 1 or 2 that is in the ball ``value``; None of others, or where both may be.
 
     -c,    -b/2 + sqrt(b^2/4 - c),    -b/2 - sqrt(b^2/4 - c)    of x + c and x^2 + b x + c
     """
@@ -706,5 +706,7 @@ def by_square_root(minimal: Univariate, value: Any) -> Expression | None:
     if len(monic) == 2:
         return number(-monic[0])
     middle = -monic[1] / 2
+    if value.overlaps(rationals.ball(middle)):
+        return None
     root = Call("sqrt", number(middle**2 - monic[0]))
     return (add if value > rationals.ball(middle) else subtract)(number(middle), root)

@@ -55,8 +55,8 @@ def judged(system: System, values: Mapping[str, Value], candidates: Equilibria) 
 
     def further(listed: Sequence[Listed]) -> tuple[Listed, ...]:
         return tuple(
-            replace(one, verdict=_decided(bare, one))
-            if not one.coordinates_of and (one.verdict.word.open or judge.may_add(one.verdict))
+            replace(one, verdict=_decided(one.system if one.coordinates_of and one.system else bare, one))
+            if one.verdict.word.open or judge.may_add(one.verdict)
             else one
             for one in listed
         )

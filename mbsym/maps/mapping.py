@@ -19,7 +19,7 @@ from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import Failure, TooLargeError
 from mbsym.algebra.plane import AlgebraicNumber, Box, Point
 from mbsym.algebra.plane.line import Line, decompose_line
-from mbsym.algebra.plane.numbers import sign
+from mbsym.algebra.plane.numbers import in_square_roots, sign
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import SIGN_WORDS
 from mbsym.algebra.terms import univariate
@@ -179,23 +179,24 @@ def with_onsets(diagram: Map, onsets: SoftBorders, watch: Watch) -> Map:
 
 @dataclass(frozen=True)
 class Nonlinear:
-    """What the one judge says of the nonlinear system at rational samples of a section's cells."""
+    """What the one judge says of the nonlinear system at samples of cells that are rational, or square roots."""
 
     judge: OneJudge
     there: Section
 
     def may_add(self, cell: Cell) -> bool:
         """Whether it may say more than the cell's verdict."""
-        rational = all(isinstance(x, fmpq) for x in _coordinates(cell.sample))
-        return cell.judged is not None and rational and self.judge.may_add(cell.judged.verdict)
+        told = all(in_square_roots(x) is not None for x in _coordinates(cell.sample))
+        return cell.judged is not None and told and self.judge.may_add(cell.judged.verdict)
 
     def __call__(self, cell: Cell) -> Cell:
         """The cell, ``nonlinear`` being what is said at its sample where that is more."""
         assert cell.judged is not None
         first, axes = cell.judged.verdict, self.there.axes
-        point = {axis.name: rationals.fraction(x) for axis, x in zip(axes, _coordinates(cell.sample), strict=True)}
+        told = (in_square_roots(x) for x in _coordinates(cell.sample))
+        point = {axis.name: x for axis, x in zip(axes, told, strict=True) if x is not None}
         try:
-            verdict = self.judge.decided(first, {**self.there.numbers, **point})
+            verdict = self.judge.at({**self.there.numbers, **point}, first)
         except Failure:
             return cell
         return cell if verdict.word.open or verdict.word is first.word else replace(cell, nonlinear=verdict)
@@ -213,8 +214,8 @@ def with_nonlinear(diagram: Map, analysis: Analysis, watch: Watch) -> Map:
     """The map with what the nonlinear system shows where the first approximation and the energy leave more to be said.
 
     Of one coordinate whose K vanishes in the whole section the first term of V decides.  Else it is what the one judge
-    says of rational samples alone: only where the axes and all that is given are parameters with numbers, and at the
-    first ``MOST_ASKED`` of such points.
+    says of samples that are rational, or square roots: only where the axes and all that is given are parameters with
+    numbers, and at the first ``MOST_ASKED`` of such points.
     """
     there = diagram.section
     if diagram.of is not Of.STABILITY or diagram.interrupted or there is None or there.constant is not None:

@@ -24,6 +24,7 @@ from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.states import SEED
 from mbsym.mechanics.symmetry import Reflection, reflections
+from mbsym.model.system import System
 from mbsym.problems.relative_equilibria.conditions import Case, Conditions
 from mbsym.problems.relative_equilibria.orbits import Orbits
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
@@ -264,7 +265,7 @@ class RelativeEquilibrium:
     angles than the description's, because those are singular here (empty: none).  ``free``: coordinates that do not
     occur in f, so that every value of them does.  ``described``: how many sets of coordinates mean this configuration.
     ``beyond``: the negative lengths of polar coordinates, behind their singularity.  ``enclosures``: balls that hold
-    the coordinates.
+    the coordinates; ``system``: at numbers, in the angles of ``coordinates_of``.
     """
 
     values: tuple[CoordinateValue, ...]
@@ -275,6 +276,7 @@ class RelativeEquilibrium:
     described: int = 1
     beyond: tuple[str, ...] = ()
     enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    system: System | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -292,6 +294,7 @@ class EquilibriumFamily:
     verdict: Verdict
     coordinates_of: str = ""
     enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    system: System | None = field(default=None, compare=False, repr=False)
     special: bool = field(default=False, compare=False, repr=False)
 
 
