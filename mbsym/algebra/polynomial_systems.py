@@ -112,6 +112,20 @@ class Family:
     def contains(self, point: AlgebraicPoint) -> bool:
         return all(point.residue(x) == 0 for x in self.equations)
 
+    def holds(self, other: Family) -> bool:
+        """Whether a family of lower dimension is proved to lie in it: its equations reduce to 0 by the other's."""
+        if other.dimension >= self.dimension or not self.contains(other.sample):
+            return False
+        for x in self.equations:
+            rest = None
+            while x and x != rest:
+                rest = x
+                for y in other.equations:
+                    x = divmod(x, y)[1]
+            if x:
+                return False
+        return True
+
 
 @dataclass(frozen=True)
 class Solutions:
@@ -199,7 +213,8 @@ class _Solver:
             self._seen_at_points(closure, free)
         # Branches do not share solutions, but a point may still be the limit of a family of another branch.
         isolated = [p for p in self.points if not any(family.contains(p) for family in self.families)]
-        return Solutions(tuple(isolated), tuple(self.families), tuple(dict.fromkeys(self.unfinished)))
+        families = [x for x in self.families if not any(other.holds(x) for other in self.families if other is not x)]
+        return Solutions(tuple(isolated), tuple(families), tuple(dict.fromkeys(self.unfinished)))
 
     def _specialised(self, branch: _Branch) -> bool:
         """Where a branch is too large: what lies at the zeros of sines and cosines apart, and then the rest again."""
