@@ -152,20 +152,27 @@ def read_settings(
     return values
 
 
+def _interval(option: str, system: System, name: str = "") -> str:
+    """An example of an interval: of the parameter that is meant, else of the first one."""
+    from mbsym.maps.section import usable
+
+    meant = name if name in usable(system) else next(iter(system.parameter_names), "p")
+    return f"{option} {meant}=0:1"
+
+
 def read_axis(text: str | None, option: str, system: System, options: Options) -> Axis | None:
     """``name=low:high`` with low < high; every complaint joins those of ``options``."""
     from mbsym.maps.section import Axis, usable
 
     if text is None:
-        example = f"{option} {next(iter(system.parameter_names), 'p')}=0:1"
-        hint = Message("for example [[example]]", example=example)
+        hint = Message("for example [[example]]", example=_interval(option, system))
         options.complain(option, "missing-option", "a parameter and its interval are wanted", hint)
         return None
     name, equals, interval = (part.strip() for part in " ".join(text.splitlines()).partition("="))
     low, colon, high = interval.partition(":")
     if not equals or not colon or not name or ":" in high or len(text) > MAX_LENGTH:
         message = Message("[[text]] gives no interval", text=ascii_safe(text[:80]))
-        hint = Message("write name=low:high, for example [[option]] alpha=-1:1", option=option)
+        hint = Message("write name=low:high, for example [[example]]", example=_interval(option, system, name))
         options.complain(option, "bad-interval", message, hint)
         return None
     exists = known(name, option, usable(system), options)

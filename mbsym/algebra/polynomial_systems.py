@@ -26,12 +26,14 @@ from typing import Any
 
 from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, message_of
 from mbsym.algebra.matrices import echelon
 from mbsym.algebra.terms import residue, univariate
 from mbsym.expressions.message import Message
+from mbsym.expressions.tree import Call, Expression, add, number, subtract
 
 Polynomial = Any  # a flint.fmpz_mpoly
 Univariate = Any  # a flint.fmpq_poly
@@ -109,6 +111,20 @@ class Family:
 
     def contains(self, point: AlgebraicPoint) -> bool:
         return all(point.residue(x) == 0 for x in self.equations)
+
+    def holds(self, other: Family) -> bool:
+        """Whether a family of lower dimension is proved to lie in it: its equations reduce to 0 by the other's."""
+        if other.dimension >= self.dimension or not self.contains(other.sample):
+            return False
+        for x in self.equations:
+            rest = None
+            while x and x != rest:
+                rest = x
+                for y in other.equations:
+                    x = divmod(x, y)[1]
+            if x:
+                return False
+        return True
 
 
 @dataclass(frozen=True)
@@ -197,7 +213,8 @@ class _Solver:
             self._seen_at_points(closure, free)
         # Branches do not share solutions, but a point may still be the limit of a family of another branch.
         isolated = [p for p in self.points if not any(family.contains(p) for family in self.families)]
-        return Solutions(tuple(isolated), tuple(self.families), tuple(dict.fromkeys(self.unfinished)))
+        families = [x for x in self.families if not any(other.holds(x) for other in self.families if other is not x)]
+        return Solutions(tuple(isolated), tuple(families), tuple(dict.fromkeys(self.unfinished)))
 
     def _specialised(self, branch: _Branch) -> bool:
         """Where a branch is too large: what lies at the zeros of sines and cosines apart, and then the rest again."""
@@ -682,3 +699,29 @@ def inverse_modulo(x: Univariate, p: Univariate) -> Univariate:
         raise ZeroDivisionError("zero has no inverse in the number field")
     _, s, _ = x.xgcd(p)
     return s % p
+
+
+def minimal_polynomial(value: Univariate, modulus: Univariate) -> Univariate:
+    """The monic minimal polynomial over QQ of an element of QQ[t]/modulus."""
+    n = int(modulus.degree())
+    if n == 1 or value.degree() <= 0:
+        return fmpq_poly([-value[0], 1])
+    columns = [(value * fmpq_poly([0] * j + [1])) % modulus for j in range(n)]
+    return fmpq_mat(n, n, [columns[j][i] for i in range(n) for j in range(n)]).minpoly()
+
+
+def by_square_root(minimal: Univariate, value: Any) -> Expression | None:
+    """The root of a polynomial of degree 1 or 2 that is in the ball ``value``; None of others, or where both may be.
+
+    -c,    -b/2 + sqrt(b^2/4 - c),    -b/2 - sqrt(b^2/4 - c)    of x + c and x^2 + b x + c
+    """
+    if minimal.degree() > 2:
+        return None
+    monic = [rationals.fraction(x / minimal[minimal.degree()]) for x in minimal.coeffs()]
+    if len(monic) == 2:
+        return number(-monic[0])
+    middle = -monic[1] / 2
+    if value.overlaps(rationals.ball(middle)):
+        return None
+    root = Call("sqrt", number(middle**2 - monic[0]))
+    return (add if value > rationals.ball(middle) else subtract)(number(middle), root)

@@ -83,8 +83,8 @@ def with_runs_prescribed(system: System) -> System:
         own = [row for row in rows if row.name.constraint == k]
         if len(own) != 1:
             continue
-        slopes = [x for slope in own[0].partials if (x := _in_parameters(ring, slope)) is not None]
-        shift = _in_parameters(ring, ring.at_rest(own[0].velocity))
+        slopes = [x for slope in own[0].partials if (x := in_parameters(ring, slope)) is not None]
+        shift = in_parameters(ring, ring.at_rest(own[0].velocity))
         if shift is None or is_number(shift, 0) or len(slopes) < len(system.coordinates):
             continue
         by_name = {name: x for name, x in zip(system.coordinates, slopes, strict=True) if not is_number(x, 0)}
@@ -107,7 +107,7 @@ def with_runs_prescribed(system: System) -> System:
 _RUN = "_dot_run"
 
 
-def _in_parameters(ring: Ring, x: Polynomial) -> Expression | None:
+def in_parameters(ring: Ring, x: Polynomial) -> Expression | None:
     """A polynomial in parameters as an expression; None of others."""
     total: Expression = ZERO
     for exponents, c in x.to_dict().items():

@@ -12,29 +12,29 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import chain, combinations
 from math import prod
 from typing import TYPE_CHECKING, Any
 
-from flint import fmpq, fmpq_mat
+from flint import arb, ctx, fmpq_mat
 
-from mbsym.algebra import rationals
+from mbsym.algebra.characteristic import characteristic_polynomial, lienard_chipart
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.kernel import kernel
-from mbsym.algebra.matrices import determinant, leading_determinants, reduced_rows
-from mbsym.algebra.point import Rationals
-from mbsym.algebra.roots import counted
+from mbsym.algebra.matrices import added, determinant, faddeev
 from mbsym.analysis.higher import momenta_at_rest
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.motion import relations, turning, unperturbed_with
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest
-from mbsym.problems.stability.linear_form import state_matrix
 from mbsym.problems.stability.verdict import Flaw, Verdict, concluded
 from mbsym.problems.stability.words import CHETAEV, LAGRANGE, Because, Fact, Ground, Reason, Word
+
+#: In bits, of the sign of a number that is not 0.
+PRECISION = 200
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -133,20 +133,21 @@ def by_rests_near(analysis: Analysis, values: Mapping[str, Any], decaying: bool)
         rests = _rests(analysis, values)
         if rests is None or not rests.dimension:
             return None
-        numbers = {name: rationals.exact(value) for name, value in values.items()}
-        carry = Carrier(analysis.parameters_scene.ring, Rationals({}, {}), numbers)
+        numbers = _Numbers(analysis.parameters_scene.ring)
+        given = numbers.ring.given(values)
         shown = analysis.autonomous
         m, d, g, k, n = (
-            fmpq_mat([[fmpq(carry(x)) for x in row] for row in part.polynomials])
+            [[numbers.at(x, given) for x in row] for row in part.polynomials]
             for part in (shown.M, shown.D, shown.G, shown.K, shown.N)
         )
         if decaying:
-            roots = counted(state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist()).charpoly())
-            beside = len(system.coordinates) - m.nrows()  # coordinates of which only the velocities are dependent
-            left = roots.zero + beside == rests.dimension and roots.left + roots.zero == roots.degree
+            polynomial = list(map(numbers.ring.reduce, characteristic_polynomial(m, added(d, g), added(k, n))))
+            zero = next(power for power, x in enumerate(polynomial) if not numbers.vanishes(x))
+            beside = len(system.coordinates) - len(m)  # coordinates of which only the velocities are dependent
+            left = zero + beside == rests.dimension and numbers.to_the_left(polynomial[zero:])
             return concluded({Fact.LEFT_BUT_STEADY}) if left else None
         conserved = not system.constraints and analysis.balance.at(values).conserves
-        across = n.rank() == 0 and _positive(k, len(rests.equations))
+        across = all(map(numbers.vanishes, chain(*n))) and numbers.semidefinite(k, len(rests.equations))
         if conserved and across and not _gyroscopic(analysis, values) and rests.varies(_change(analysis, rests)):
             facts = {Fact.MINIMUM_ACROSS_RESTS, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED}
             return concluded(facts, Reason(Because.ALONG_RESTS, (rests.dimension,)))
@@ -201,6 +202,51 @@ def _gyroscopic(analysis: Analysis, values: Mapping[str, Any]) -> bool:
 
 
 @dataclass(frozen=True)
+class _Numbers:
+    """Numbers in a ring: rational ones, square roots, and what is made of them."""
+
+    ring: Ring
+
+    def at(self, x: Polynomial, place: Mapping[int, Polynomial]) -> Polynomial:
+        """x where generators are these.  Raises NotRational where it hangs on a name still."""
+        value = self.ring.reduce(self.ring.substitute(x, dict(place)))
+        if not self._known(value):
+            raise NotRational("a derivative has no exact value")
+        return value
+
+    def _known(self, x: Polynomial) -> bool:
+        made_of = (self.ring.generators[k] for k in occurring([x]))
+        return all(g.name == "pi" if g.argument is None else self._known(g.argument) for g in made_of)
+
+    def vanishes(self, x: Polynomial) -> bool:
+        """Raises NotRational where neither is proved."""
+        zero = self.ring.is_zero(x)
+        if zero is None:
+            raise NotRational("a number that may be 0")
+        return zero
+
+    def positive(self, x: Polynomial) -> bool:
+        """Whether x is proved to be greater than 0."""
+        names = dict.fromkeys(self.ring.names(), arb(0)) | {"pi": arb.pi()}
+        with ctx.workprec(PRECISION):
+            return bool(self.ring.evaluate(self.ring.reduce(x), names) > 0)
+
+    def to_the_left(self, polynomial: Sequence[Polynomial]) -> bool:
+        """Whether all roots have Re < 0 (Lienard and Chipart); coefficients from low to high powers."""
+        return all(self.positive(x) for _, x in lienard_chipart(polynomial))
+
+    def semidefinite(self, k: Sequence[Sequence[Polynomial]], rank: int) -> bool:
+        """Whether a symmetric K is positive semidefinite of this rank, by det(s + K) = s^n + e_1 s^(n-1) + ... + e_n.
+
+        All roots are real: e_1, ..., e_rank > 0, the others are 0.
+        """
+        ring = self.ring
+        *_, whole = faddeev([[-x for x in row] for row in k], ring.zero, ring.one)
+        sums = [ring.reduce(x) for x in whole[-2::-1]]
+        return all(map(self.positive, sums[:rank])) and all(map(self.vanishes, sums[rank:]))
+
+
+@dataclass(frozen=True)
 class _Rests:
     """The rests near one: the zeros of ``equations``, whose gradients there are independent.
 
@@ -212,23 +258,33 @@ class _Rests:
     numbers: Mapping[int, Polynomial]
     place: Mapping[int, Polynomial]
     equations: list[Polynomial] = field(default_factory=list)
-    slopes: list[list[fmpq]] = field(default_factory=list)
+    slopes: list[list[Polynomial]] = field(default_factory=list)
 
     @property
     def dimension(self) -> int:
         return len(self.names) - len(self.equations)
 
-    def at(self, x: Polynomial) -> fmpq:
-        """x at the rest.  Raises NotRational where it is no rational number."""
-        value = self.ring.reduce(self.ring.substitute(x, dict(self.place)))
-        if not value.is_constant():
-            raise NotRational("a derivative has no exact value")
-        return value.leading_coefficient() if value else fmpq(0)
+    def at(self, x: Polynomial) -> Polynomial:
+        """x at the rest.  Raises NotRational where it is no number in square roots."""
+        return _Numbers(self.ring).at(x, self.place)
+
+    def nonzero(self, x: Polynomial) -> bool:
+        """Whether x is proved to differ from 0 at the rest; if not, that it is 0.  Raises NotRational."""
+        return not _Numbers(self.ring).vanishes(self.at(x))
+
+    def independent(self, rows: Sequence[Sequence[Polynomial]]) -> tuple[int, ...] | None:
+        """Columns at which rows of numbers have a determinant that is not 0; None where there are none."""
+        numbers, size = _Numbers(self.ring), len(rows)
+        for columns in combinations(range(len(self.names)), size):
+            chosen = [[row[k] for k in columns] for row in rows]
+            if not numbers.vanishes(self.ring.reduce(determinant(self.ring, chosen))):
+                return columns
+        return None
 
     def takes(self, x: Polynomial) -> bool:
         """Whether x is one of the equations now: its gradient is no combination of theirs."""
         own = [self.at(self.ring.derivative(x, name)) for name in self.names]
-        if fmpq_mat([*self.slopes, own]).rank() == len(self.slopes):
+        if len(self.slopes) == len(self.names) or self.independent([*self.slopes, own]) is None:
             return False
         self.equations.append(x)
         self.slopes.append(own)
@@ -237,14 +293,14 @@ class _Rests:
     def numerator(self, x: Polynomial) -> Polynomial:
         """Of x at the numbers.  Raises NotRational where the denominator vanishes at the rest."""
         top, below = self.ring.fraction(self.ring.reduce(self.ring.substitute(x, self.numbers)))
-        if not all(self.at(factor) for factor, _ in below):
+        if not all(self.nonzero(factor) for factor, _ in below):
             raise NotRational("a derivative has no exact value")
         return top
 
     def vanishing_part(self, x: Polynomial) -> Polynomial:
         """x without the factors that differ from 0 at the rest."""
         factors = irreducible_factors(x)[1] if x else [(x, 1)]
-        return prod((factor**exponent for factor, exponent in factors if not self.at(factor)), start=self.ring.one)
+        return prod((factor**exponent for factor, exponent in factors if not self.nonzero(factor)), start=self.ring.one)
 
     def plane(self, fixed: Collection[str]) -> dict[int, Polynomial]:
         """The states at which these coordinates are what they are at the rest, and do not move."""
@@ -258,7 +314,7 @@ class _Rests:
         They are a plane of coordinates, or the zeros of one irreducible polynomial.
         """
         ring = self.ring
-        plane = self.plane([self.names[j] for j in reduced_rows(fmpq_mat(self.slopes))])
+        plane = self.plane([self.names[j] for j in self.independent(self.slopes) or ()])
         if all(ring.vanishes(ring.substitute(equation, plane)) for equation in self.equations):
             return ring.is_zero(ring.reduce(ring.substitute(x, plane))) is False
         plain = {ring.generators[k].kind for k in occurring([x, *self.equations])} <= {"coordinate"}
@@ -312,10 +368,3 @@ def _change(analysis: Analysis, rests: _Rests) -> Polynomial:
         replaced = [[*row[:k], x, *row[k + 1 :]] for row, x in zip(mass, column, strict=True)]
         trace = ring.reduce(trace + determinant(ring, replaced))
     return rests.numerator(trace * rests.at(whole) - whole * rests.at(trace))
-
-
-def _positive(k: fmpq_mat, rank: int) -> bool:
-    """Whether K is positive semidefinite of this rank: so on the columns of its pivots."""
-    pivots = reduced_rows(k)
-    block = [[k[i, j] for j in pivots] for i in pivots]
-    return len(pivots) == rank and all(minor > 0 for minor in leading_determinants(fmpq_mat, block))

@@ -35,7 +35,7 @@ from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
-from mbsym.mechanics.rest import at_numbers, given_values, missing_values
+from mbsym.mechanics.rest import Value, at_numbers, given_values, missing_values, rational_values
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest, displaced
 from mbsym.model.system import System
@@ -137,11 +137,22 @@ class Judge:
                 return further_verdict
         return whole
 
+    def at(self, values: Mapping[str, Value], first: Verdict) -> Verdict:
+        """``decided`` at values that may be expressions of exact irrational numbers."""
+        rational = rational_values(values)
+        if len(rational) == len(values):
+            return self.decided(first, rational)
+        there = self._at(values)
+        return first if there is None else there({})
+
     @cached_property
     def _at_its_numbers(self) -> Judge | None:
         """Of the description's own values, of which some are irrational: cos(pi/2) is 0 where it is put in."""
+        return self._at(given_values(self.analysis.system, {}))
+
+    def _at(self, values: Mapping[str, Value]) -> Judge | None:
+        """That of the system in which these numbers stand in place of all parameters."""
         system = self.analysis.system
-        values = given_values(system, {})
         if {*missing_values(system, values)}:
             return None
         try:

@@ -55,8 +55,8 @@ def judged(system: System, values: Mapping[str, Value], candidates: Equilibria) 
 
     def further(listed: Sequence[Listed]) -> tuple[Listed, ...]:
         return tuple(
-            replace(one, verdict=_decided(bare, one))
-            if not one.coordinates_of and (one.verdict.word.open or judge.may_add(one.verdict))
+            replace(one, verdict=_decided(one.system if one.coordinates_of and one.system else bare, one))
+            if one.verdict.word.open or judge.may_add(one.verdict)
             else one
             for one in listed
         )
@@ -68,7 +68,7 @@ def _decided(bare: System, listed: RelativeEquilibrium | EquilibriumFamily) -> V
     """The verdict there; where any value of some coordinates will do at 0 of them, and in samples elsewhere."""
     known = listed.verdict
     if isinstance(listed, EquilibriumFamily):
-        if known.because(Because.NOT_ENCLOSED):  # the constraints are singular there
+        if bare.constraints and known.because(Because.NOT_ENCLOSED):  # the constraints are singular there
             return known
         return _decided_at(bare, listed.sample, listed.enclosures, known)
     free = () if bare.constraints or not listed.free else _telling(bare, listed.free)
@@ -99,9 +99,14 @@ def _sampled(bare: System, name: str, t: Fraction) -> CoordinateValue:
 def _decided_at(
     bare: System, values: Sequence[CoordinateValue], enclosures: Mapping[str, Any], known: Verdict
 ) -> Verdict:
-    """The verdict at one place; coordinates without an exact text are parameters known by their enclosures."""
-    enclosed = {f"{_PLACE}{x.name}": enclosures[x.name] for x in values if not x.exact and x.name in bare.coordinates}
-    places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in values}
+    """The verdict at one place; coordinates that are not known exactly are parameters known by their enclosures."""
+    known_places = {x.name: _exact(x) for x in values}
+    enclosed = {
+        f"{_PLACE}{name}": enclosures[name]
+        for name, x in known_places.items()
+        if x is None and name in bare.coordinates
+    }
+    places = {name: Name(f"{_PLACE}{name}") if x is None else x for name, x in known_places.items()}
     described = {entry.coordinate for entry in bare.motion}
     follow = {name for name, velocity in zip(bare.coordinates, bare.velocities, strict=True) if velocity in places}
     motion = tuple(
@@ -134,8 +139,10 @@ _SINGULAR = (Because.RANK_LOST, Because.OTHER_BRANCH)
 _PLACE = "place_dot_"
 
 
-def _exact(value: CoordinateValue) -> Expression:
-    """The value of a coordinate whose text is exact: a rational number, or an angle as twelfths of pi."""
+def _exact(value: CoordinateValue) -> Expression | None:
+    """A coordinate that is known exactly: of an exact text a rational number, or an angle as twelfths of pi."""
+    if not value.exact:
+        return value.exactly
     if not value.angle:
         return number(Fraction(value.text))
     return multiply(number(Fraction(round(12 * value.value / math.pi), 12)), Name("pi"))

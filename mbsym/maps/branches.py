@@ -23,9 +23,9 @@ import numpy as np
 from flint import arb, fmpq
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import Constrained, Failure
+from mbsym.algebra.failures import NOT_THERE, Constrained, Failure
 from mbsym.algebra.plane.line import Interval, Line, divided
-from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compare, enclosure
+from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compare, enclosure, in_square_roots
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.rationals import fraction
 from mbsym.algebra.ring import Polynomial, Ring
@@ -86,6 +86,17 @@ def branches(
     def judged_at(p: fmpq) -> Equilibria:
         return judged(system, {**values, axis.name: fraction(p)}, listed(p))
 
+    def judged_there(p: Number) -> Equilibria | None:
+        """Critical values may be irrational; None where that is no square root, or nothing is listed."""
+        told = in_square_roots(p)
+        if told is None:
+            return None
+        try:
+            there = {**values, axis.name: told}
+            return judged(system, there, equilibria(system, there, limits=bounds, rank=rank))
+        except (Failure, *NOT_THERE):
+            return None
+
     tried = [] if count_proved else _changes(listed, *ends(axis), numbers)
     numbers = ascending([*numbers, *tried])
     line = divided(*ends(axis), [(x, ()) for x in numbers])
@@ -120,8 +131,8 @@ def branches(
                 corners[k] = Cell(Shape.ZERO, k, number, near, Certainty.UNDECIDED)
                 continue
             meetings, reason, singular = _meetings(parts, number)
-            if meetings is not None and isinstance(number, fmpq):
-                meetings = _judged(meetings, judged_at(number))
+            if meetings is not None and (there_judged := judged_there(number)) is not None:
+                meetings = _judged(meetings, there_judged)
             if reason:
                 remarks.append(Remark(Doubt.UNCOUNTED, f"{short(number)}: {reason}"))
             border = singular or _among(number, [*leaving.continua, *(x.number for x in leaving.points)])

@@ -17,14 +17,14 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from flint import fmpq, fmpq_mat, fmpq_poly
+from flint import fmpq
 
 from mbsym.algebra import rationals
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
-from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
+from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, minimal_polynomial, solve
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.charts import charts
 from mbsym.mechanics.rest import at_numbers, rest
@@ -297,7 +297,7 @@ class Curve(Varied):
     def _conjugates(self, table: Unknowns, family: Family) -> list[Number]:
         """The numbers in the range that p may have on a family, as it has one of them at the sample."""
         k = table.indices.index(self.index)
-        minimal = _minimal(family.sample.values[k], family.sample.modulus)
+        minimal = primitive(minimal_polynomial(family.sample.values[k], family.sample.modulus))
         ends = [x for x in (self.low, self.high) if minimal(x) == 0]
         return [*ends, *map(number, roots_between(minimal, self.low, self.high))]
 
@@ -326,7 +326,7 @@ class Curve(Varied):
     def _constant_on(self, table: Unknowns, family: Family) -> bool:
         """Whether p has one value on a family, near its sample: fixed there it does not make the family smaller."""
         k = table.indices.index(self.index)
-        minimal = _minimal(family.sample.values[k], family.sample.modulus)
+        minimal = primitive(minimal_polynomial(family.sample.values[k], family.sample.modulus))
         result = solve([*family.equations, _in_unknown(minimal, table.context, k)], (), table.bounded(), self.limits)
         return any(x.dimension >= family.dimension and x.contains(family.sample) for x in result.families)
 
@@ -414,19 +414,9 @@ def curves(
 # --- numbers ----------------------------------------------------------------------------------------------------------
 
 
-def _minimal(value: Any, modulus: Any) -> Any:
-    """The integer minimal polynomial of an element of QQ[t]/modulus."""
-    n = int(modulus.degree())
-    if n == 1 or value.degree() <= 0:
-        return primitive(fmpq_poly([-value[0], 1]))
-    columns = [(value * fmpq_poly([0] * j + [1])) % modulus for j in range(n)]
-    table = fmpq_mat(n, n, [columns[j][i] for i in range(n) for j in range(n)])
-    return primitive(table.minpoly())
-
-
 def _algebraic(value: Any, point: AlgebraicPoint, low: Any, high: Any) -> Number | None:
     """An element of the number field as a number in [low, high], None where it lies outside."""
-    minimal = _minimal(value, point.modulus)
+    minimal = primitive(minimal_polynomial(value, point.modulus))
     if minimal.degree() == 1:
         exact = fmpq(-minimal[0], minimal[1])
         return exact if low <= exact <= high else None

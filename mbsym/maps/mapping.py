@@ -19,7 +19,7 @@ from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import Failure, TooLargeError
 from mbsym.algebra.plane import AlgebraicNumber, Box, Point
 from mbsym.algebra.plane.line import Line, decompose_line
-from mbsym.algebra.plane.numbers import sign
+from mbsym.algebra.plane.numbers import in_square_roots, sign
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import SIGN_WORDS
 from mbsym.algebra.terms import univariate
@@ -177,39 +177,61 @@ def with_onsets(diagram: Map, onsets: SoftBorders, watch: Watch) -> Map:
     return replace(diagram, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, onsets=onsets)
 
 
+@dataclass(frozen=True)
+class Nonlinear:
+    """What the one judge says of the nonlinear system at samples of cells that are rational, or square roots."""
+
+    judge: OneJudge
+    there: Section
+
+    def may_add(self, cell: Cell) -> bool:
+        """Whether it may say more than the cell's verdict."""
+        told = all(in_square_roots(x) is not None for x in _coordinates(cell.sample))
+        return cell.judged is not None and told and self.judge.may_add(cell.judged.verdict)
+
+    def __call__(self, cell: Cell) -> Cell:
+        """The cell, ``nonlinear`` being what is said at its sample where that is more."""
+        assert cell.judged is not None
+        first, axes = cell.judged.verdict, self.there.axes
+        told = (in_square_roots(x) for x in _coordinates(cell.sample))
+        point = {axis.name: x for axis, x in zip(axes, told, strict=True) if x is not None}
+        try:
+            verdict = self.judge.at({**self.there.numbers, **point}, first)
+        except Failure:
+            return cell
+        return cell if verdict.word.open or verdict.word is first.word else replace(cell, nonlinear=verdict)
+
+
+def nonlinear_in(analysis: Analysis, there: Section) -> Nonlinear | None:
+    """None where axes, or what is given, are no parameters with rational numbers."""
+    system, names = analysis.system, {axis.name for axis in there.axes}
+    related = {item.name for item in system.relations} | {name for name, _ in analysis.equilibrium.solved}
+    plain = {*system.parameter_names} - related == {*there.numbers, *names} - related
+    return Nonlinear(OneJudge(analysis), there) if plain and there.constant is None else None
+
+
 def with_nonlinear(diagram: Map, analysis: Analysis, watch: Watch) -> Map:
     """The map with what the nonlinear system shows where the first approximation and the energy leave more to be said.
 
     Of one coordinate whose K vanishes in the whole section the first term of V decides.  Else it is what the one judge
-    says of rational samples alone: only where the axes and all that is given are parameters with numbers, and at the
-    first ``MOST_ASKED`` of such points.
+    says of samples that are rational, or square roots: only where the axes and all that is given are parameters with
+    numbers, and at the first ``MOST_ASKED`` of such points.
     """
-    there, system = diagram.section, analysis.system
+    there = diagram.section
     if diagram.of is not Of.STABILITY or diagram.interrupted or there is None or there.constant is not None:
         return diagram
     diagram = by_first_term(diagram, analysis)
-    names = {axis.name for axis in diagram.axes}
-    related = {item.name for item in system.relations} | {name for name, _ in analysis.equilibrium.solved}
-    if {*system.parameter_names} - related != {*there.numbers, *names} - related:
+    further, left = nonlinear_in(analysis, there), MOST_ASKED
+    if further is None:
         return diagram
-    judge, left = OneJudge(analysis), MOST_ASKED
 
     def asked(cell: Cell) -> Cell:
         nonlocal left
-        point = _coordinates(cell.sample)
-        first = None if cell.judged is None else cell.judged.verdict
-        if first is None or not all(isinstance(x, fmpq) for x in point) or not judge.may_add(first):
-            return cell
-        if not left:
+        if not left or not further.may_add(cell):
             return cell
         left -= 1
-        values = {axis.name: rationals.fraction(x) for axis, x in zip(diagram.axes, point, strict=True)}
         watch("terms of higher order", cell.number, len(diagram.regions))
-        try:
-            verdict = judge.decided(first, {**there.numbers, **values})
-        except Failure:
-            return cell
-        return cell if verdict.word.open or verdict.word is first.word else replace(cell, nonlinear=verdict)
+        return further(cell)
 
     try:
         regions, arcs, corners = (tuple(map(asked, part)) for part in (diagram.regions, diagram.arcs, diagram.corners))

@@ -23,6 +23,8 @@ from mbsym.expressions.tree import (
     Number,
     Operation,
     differentiate,
+    divide,
+    multiply,
     names,
     number,
     sign_by_structure,
@@ -44,7 +46,7 @@ from mbsym.model.admissibility import (
 )
 from mbsym.model.assumptions import broken, contradictory
 from mbsym.model.substitution import folded
-from mbsym.model.system import Body, System, velocity_name
+from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
 from mbsym.source.reading import Reading
@@ -323,6 +325,7 @@ def check_system(system: System, reading: Reading) -> None:
     _check_given(system, reading)
     _check_relation_values(system, reading)
     _check_assumption_values(system, reading)
+    _check_degrees(system, reading)
     if not reading.errors:  # else a misspelt use would be complained about twice
         _check_use(system, reading)
 
@@ -500,3 +503,25 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
         contradiction = "no values of the parameters keep this assumption and those before it"
         hint = "declared signs and relations count as well"
         reading.error("contradictory-assumptions", contradiction, against.span, hint)
+
+
+def _check_degrees(system: System, reading: Reading) -> None:
+    """Angles of rotation that are multiples of 15, more than two turns in radians: degrees were meant, most likely."""
+    turned = {name for body in system.bodies for _, angle in body.rotation.turns() for name in names(angle)}
+    places = [(x.coordinate, x.position, x.span) for x in system.initial]
+    for name, written, span in [*places, *((x.coordinate, x.value, x.span) for x in system.motion)]:
+        value = None if written is None else rational(written)
+        if name not in turned or value is None or span is None or not 15 <= abs(value) <= 360 or value % 15:
+            continue
+        share = Fraction(abs(value), 180)
+        meant = divide(multiply(number(share.numerator), Name("pi")), number(share.denominator))
+        message = Message(
+            "'[[name]]' is an angle in radians: [[value]] are [[turns]] turns",
+            name=name,
+            value=str(value),
+            turns=f"{float(value) / math.tau:.3g}",
+        )
+        hint = Message(
+            "for [[value]] degrees write [[written]]", value=str(value), written=f"-{meant}" if value < 0 else meant
+        )
+        reading.complaints.warning("angle-in-degrees", message, span, hint)

@@ -94,7 +94,7 @@ def _vector_hint(value: Node) -> str:
 def _damper(item: Item, load: Load) -> bool:
     if isinstance(load, PointDamper):
         message = "this damper acts along the line between its points: R = coefficient (rate of the distance)^2 / 2"
-        hint = "for R = coefficient |V_1 - V_2|^2 / 2, which this key meant before, write 'isotropic damper'"
+        hint = "for R = coefficient |V_1 - V_2|^2 / 2 write 'isotropic damper'"
         if "between" in item.sound and load.first == load.second:
             met = "these points are one, and the line between them has no direction"
             item.value_error("coinciding-points", met, "between")

@@ -72,9 +72,9 @@ class Request:
     """Measure something of FILE at very many parameter values.
 
     What is measured is derived once, in symbols, and evaluated in machine code.  A verdict of stability is that of the
-    first approximation and the energy, exactly at the very number in its row ('mbsym run' asks terms of higher order,
-    too): points are told apart by signs whose rounding is bounded, every kind is judged exactly once, and what is too
-    near a border is judged by itself.  Eigenvalues are floating-point numbers.
+    first approximation and the energy, exactly at the very number in its row: points are told apart by signs whose
+    rounding is bounded, every kind is judged exactly once, and what is too near a border is judged by itself, by terms
+    of higher order, too ('mbsym run' asks them everywhere).  Eigenvalues are floating-point numbers.
 
     Finished chunks are kept in a folder 'chunks': the same command goes on where it was interrupted, shards on other
     machines may share the folder.  Random points give probabilities with confidence intervals.  Written are sweep.csv

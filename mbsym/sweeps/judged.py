@@ -23,8 +23,8 @@ from mbsym.algebra.plane import Point
 from mbsym.analysis import Analysis, judge
 from mbsym.maps.admissible import Admissibility
 from mbsym.maps.axis import Axis
-from mbsym.maps.mapping import ByFirstTerm, Judge, first_term_in, kept_in
-from mbsym.maps.result import Lack, Shape
+from mbsym.maps.mapping import MOST_ASKED, ByFirstTerm, Judge, first_term_in, kept_in, nonlinear_in
+from mbsym.maps.result import Cell, Lack, Shape
 from mbsym.maps.section import Section, Unfit, unmade
 from mbsym.maps.verdicts import Judged
 from mbsym.numerics.kernels import llvm
@@ -46,7 +46,7 @@ WORDS = (*NO_VERDICT, *(word.value for word in Word))
 VERDICT = Column(
     "verdict",
     "what problem 6 says there by the first approximation and the energy, exactly, at the numbers in this row taken as "
-    "they stand",
+    "they stand; of points judged by themselves, where that leaves the motion open, what terms of higher order decide",
     WORDS,
     whole=True,
     title="verdict of problem 6",
@@ -82,6 +82,7 @@ class StabilityMeasure:
         ]
         self._deciding = deciding(section.parts, further, [axis.name for axis in section.axes], section.constant)
         self._judge = Judge(section, self.admissibility)
+        self._nonlinear = nonlinear_in(analysis, section)
         self._kernel = llvm.kernels({"signs": self._deciding.code}, wide=True)["signs"]
         self._known: dict[tuple[int, ...], tuple[int, int]] = {}
         self._lock = Lock()
@@ -103,28 +104,53 @@ class StabilityMeasure:
                 with self._lock:
                     self._known[key] = verdict
             words[members], right[members] = verdict
-        for place in np.flatnonzero(~certain):
-            words[place], right[place] = self.judged(points[:, place])
+        alone = np.flatnonzero(~certain)
+        words[alone], right[alone] = self._singly(points[:, alone])
         return {VERDICT.name: words, RIGHT.name: right, EXACT.name: (~certain).astype(np.int8)}
 
     def judged(self, point: Sequence[float]) -> tuple[int, int]:
-        """(place of the word in ``WORDS``, roots with Re > 0) at one point, exactly."""
+        """(place of the word in ``WORDS``, roots with Re > 0) at one point, exactly, as all say of its class."""
+        return self._told(self._cell(point))
+
+    def _singly(self, points: Any) -> Any:
+        """The same of points each by itself, shape (2, m): what the nonlinear system shows there, too."""
+        further, left = self._nonlinear, MOST_ASKED
+        told = np.zeros((2, points.shape[1]), dtype=np.int16)
+        for place, cell in enumerate(map(self._cell, points.T)):
+            if left and further and isinstance(cell, Cell) and _open(cell) and further.may_add(cell):
+                left -= 1
+                with self._lock:
+                    cell = further(cell)
+            told[:, place] = self._told(cell)
+        return told
+
+    def _cell(self, point: Sequence[float]) -> Cell | str:
+        """What is proved at one point; a word where there is no cell."""
         if not np.all(np.isfinite(point)):
-            return WORDS.index(UNDEFINED), -1
+            return UNDEFINED
         numbers = [fmpq(*float(x).as_integer_ratio()) for x in point]
         line, constant = len(numbers) == 1, self.section.constant is not None
         place: Any = numbers[0] if line else Point(*numbers) if constant else tuple(numbers)
         try:
             cell = self._judge(Shape.INTERVAL if line else Shape.REGION, 0, place)
         except Failure:  # a limit was reached: nothing is wrong with the formulas
-            return WORDS.index(Word.UNDECIDED), -1
+            return Word.UNDECIDED.value
         except (ValueError, ZeroDivisionError):
-            return WORDS.index(UNDEFINED), -1
-        if self._by_first_term is not None:
-            cell = self._by_first_term(cell)
+            return UNDEFINED
+        return cell if self._by_first_term is None else self._by_first_term(cell)
+
+    @staticmethod
+    def _told(cell: Cell | str) -> tuple[int, int]:
+        if isinstance(cell, str):
+            return WORDS.index(cell), -1
         if cell.judged is None:
             return WORDS.index(NO_WORDS[cell.lack]), -1
-        return WORDS.index(cell.judged.verdict.word.value), -1 if cell.right is None else cell.right
+        verdict = cell.nonlinear or cell.judged.verdict
+        return WORDS.index(verdict.word.value), -1 if cell.right is None else cell.right
+
+
+def _open(cell: Cell) -> bool:
+    return cell.judged is not None and cell.judged.verdict.word.open
 
 
 class SingleVerdicts(StabilityMeasure):
@@ -142,9 +168,10 @@ class SingleVerdicts(StabilityMeasure):
         self.section, _ = unmade(analysis, axes, settings)
         self.admissibility = kept_in(analysis, self.section)
         self._judge = _Singly(analysis, self.section, self.admissibility)
+        self._nonlinear, self._lock = nonlinear_in(analysis, self.section), Lock()
 
     def at(self, points: Any) -> Mapping[str, Any]:
-        return {VERDICT.name: np.array([self.judged(point)[0] for point in points.T], dtype=np.int8)}
+        return {VERDICT.name: self._singly(points)[0].astype(np.int8)}
 
 
 class _Singly(Judge):

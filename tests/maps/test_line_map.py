@@ -102,3 +102,22 @@ def test_the_files_of_a_line(tmp_path: Path) -> None:
     assert r"\mu = 0.0385208965" in (tmp_path / "map.tex").read_text()
     rows = list(csv.DictReader((tmp_path / "located.csv").open()))
     assert [row["verdict"] for row in rows] == [Word.STABLE, Word.UNSTABLE]
+
+
+@pytest.mark.parametrize(("further", "wanted"), [("+ x**4/4", Word.STABLE), ("- x**4/4", Word.UNSTABLE)])
+def test_irrational_borders_are_asked_of_the_nonlinear_system(further: str, wanted: Word) -> None:
+    """V = (a^2 - 2) x^2/2 +- x^4/4: at a = +-sqrt(2) the first term is of order four.  a^3 = 2 is no square root."""
+    text = """
+mbsym: 1
+name: border
+parameters: {a: {sign: real, value: 0}}
+bodies: [{name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [potential: (a**2 - 2)*x**2/2 FURTHER]
+motion: {x: 0}
+""".replace("FURTHER", further)
+    axis = Axis("a", Fraction(-3), Fraction(3))
+    line = exact_map(mbsym.loads(text), [axis], {})
+    verdicts = [cell.nonlinear for cell in line.corners if cell.nonlinear is not None]
+    assert [verdict.word for verdict in verdicts] == [wanted, wanted]
+    cubic = exact_map(mbsym.loads(text.replace("a**2", "a**3")), [axis], {})
+    assert all(cell.nonlinear is None for cell in cubic.corners)

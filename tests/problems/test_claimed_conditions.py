@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from pathlib import Path
 
 import pytest
 from conftest import STATEMENTS
@@ -307,19 +308,57 @@ def test_coinciding_frequencies_are_not_excluded() -> None:
 def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called_exact() -> None:
     """x'' = -a x - x^3 is stable at a = 0 (a strict minimum of x^4/4), the bead at g = R w^2 like it: V = m R^2 w^2
     (1 - cos th)^2/2.  Without forces on velocities or with them, the same words."""
-    for name, strict, weak, there in (
-        ("strict_border", "a > 0", "a >= 0", "stable"),
-        ("necessary-at-border", "g > R*w**2", "g >= R*w**2", "stable"),
-        ("soft", "mu < 0", "mu <= 0", "asymptotically stable"),  # -x^2 x' takes energy wherever x is not at rest
+    for name, strict, weak in (
+        ("strict_border", "a > 0", "a >= 0"),
+        ("necessary-at-border", "g > R*w**2", "g >= R*w**2"),
+        ("soft", "mu < 0", "mu <= 0"),  # -x^2 x' takes energy wherever x is not at rest
     ):
         found = outcomes(name)
         assert found[strict, "necessary"].outcome == Outcome.BORDERS, name
         assert "with equality, too, the motion may be stable" in found[strict, "necessary"].remark
         assert found[strict, "necessary"].counterexample.at_equality
         assert found[weak, "necessary"].outcome == Outcome.EXACT, name
-        assert found[weak, "sufficient"].outcome == Outcome.UNDECIDED, name  # of all parameters of the border
-        assert f"at the given values: there the motion is {there} (" in found[weak, "sufficient"].remark
+        assert found[weak, "sufficient"].outcome == Outcome.EXACT, name  # of all parameters of the border
+        assert "with it the motion is stable (" in found[weak, "sufficient"].remark
     assert outcomes("strict_border")["a != 0", "necessary"].outcome == Outcome.FAILS
+
+
+OF_THE_BORDER = """
+name: at a border
+mbsym: 1
+parameters: {k: real, c: {sign: C_SIGN, value: 1}}
+bodies: [{name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}]
+loads: [{potential: (k - 1)*x**2/2 + c*x**4 + y**2 + x**2*y**3}]
+motion: {}
+values: {k: 1}
+claims:
+  - {claim: condition, that: k >= 1, as: sufficient}
+  - {claim: condition, that: k > 1, as: necessary}
+"""
+
+
+@pytest.mark.parametrize(
+    ("sign", "potential", "sufficient", "necessary"),
+    [
+        # With k = 1: c x^4 + ..., of which the sign is known of all c > 0, of no others.
+        ("positive", "c*x**4", Outcome.EXACT, Outcome.BORDERS),
+        ("positive", "-c*x**4", Outcome.FAILS, Outcome.EXACT),
+        ("real", "c*x**4", Outcome.FAILS, Outcome.BORDERS),
+        ("positive", "c*x**4 + y**2 + x**2*y**3", Outcome.UNDECIDED, Outcome.BORDERS),
+    ],
+)
+def test_a_border_is_judged_for_all_parameters_on_it(
+    tmp_path: Path, sign: str, potential: str, sufficient: str, necessary: str
+) -> None:
+    """V = (k - 1) x^2/2 + c x^4 is stable at k = 1 for c > 0, V = (k - 1) x^2/2 - c x^4 is not."""
+    text = OF_THE_BORDER.replace("C_SIGN", sign).replace("c*x**4 + y**2 + x**2*y**3", potential)
+    if "y" not in potential:
+        text = text.replace("[x, y, 0], coordinates: [x, y]", "[x, 0, 0], coordinates: [x]")
+    (tmp_path / "border.yaml").write_text(text, encoding="utf-8")
+    found = mbsym.load(tmp_path / "border.yaml").claims
+    assert [result.outcome for result in found] == [sufficient, necessary]
+    if sufficient == Outcome.UNDECIDED:
+        assert "at the given values: there the motion is stable (" in found[0].remark
 
 
 def test_no_root_to_the_left_does_not_mean_no_asymptotic_stability() -> None:

@@ -170,3 +170,34 @@ def test_sweeps_say_what_exact_counts_say() -> None:
             assert (told == "unstable") == (right > 0)
             words.add(told)
         assert len(words) > 1
+
+
+BORDER = """
+mbsym: 1
+name: border
+parameters: {a: {sign: real, value: 0}}
+bodies: [{name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [potential: A*x**2/2 + B, rayleigh: D*x_dot**2/2]
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("linear", "further", "damping", "wanted"),
+    [
+        # at a = 0: V = x^4/4 has a strict minimum, V = -x^4/4, x^3 have none
+        ("a", "x**4/4", "0", ["unstable", "stable", "stable"]),
+        ("a", "-x**4/4", "0", ["unstable", "unstable", "stable"]),
+        ("a", "x**3", "0", ["unstable", "unstable", "stable"]),
+        ("a", "x**4/4", "1", ["unstable", "asymptotically stable", "asymptotically stable"]),
+        # x'' - a x' + x + x^2 x' = 0: a focus at a = 0, by x^2 x'; then the energy grows
+        ("1", "0", "-a + x**2", ["asymptotically stable", "stable", "unstable"]),
+    ],
+)
+def test_on_borders_terms_of_higher_order_decide(linear: str, further: str, damping: str, wanted: list[str]) -> None:
+    text = BORDER.replace("A*", f"{linear}*").replace("+ B", f"+ {further}").replace("D*", f"({damping})*")
+    analysis = mbsym.loads(text)
+    measure = StabilityMeasure(analysis, section(analysis, [Axis("a", F(-1), F(1))], {}))
+    found = measure.at(np.array([[-1.0, 0.0, 1.0]]))
+    assert [WORDS[code] for code in found[VERDICT.name]] == wanted
+    assert found[EXACT.name].tolist() == [0, 1, 0]

@@ -346,3 +346,51 @@ def test_parts_are_told_by_reasons_of_their_own() -> None:
         (Because.HIGHER_MINIMUM, (3,)),
         (Because.APART, ("y",)),
     }
+
+
+OPEN_VALLEY = """
+mbsym: 1
+name: valley
+parameters: {}
+bodies: [{name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}]
+loads: [potential: V, rayleigh: d*(x_dot**2 + y_dot**2 + z_dot**2)/2]
+motion: {}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "damping", "wanted"),
+    [
+        # x = -sqrt(2), any y: V'' across is 16 (1 + y^2), so that it moves evenly along y
+        ("(x**2 - 2)**2*(1 + y**2) + z**2", "0", Word.UNSTABLE),
+        # l^2 + l + 16 (1 + y^2), l^2 + l + 2, l (l + 1): one zero root along one dimension of rests
+        ("(x**2 - 2)**2*(1 + y**2) + z**2", "1", Word.ASYMPTOTIC_BUT_STEADY),
+        # ... l^2 + l - 2
+        ("(x**2 - 2)**2*(1 + y**2) - z**2", "1", Word.UNSTABLE),
+        # a circle of rests, alike by a symmetry
+        ("(x**2 + y**2 - 2)**2 + z**2", "0", Word.STABLE_BUT_CYCLIC),
+        ("(x**2 + y**2 - 2)**2 + z**2", "1", Word.ASYMPTOTIC_BUT_CYCLIC),
+        # the same at a sum of square roots: (x - 1)^2 = 2
+        ("((x - 1)**2 - 2)**2*(1 + y**2) + z**2", "1", Word.ASYMPTOTIC_BUT_STEADY),
+        # of fields of a higher degree nothing is known: x^3 = 2
+        ("(x**3 - 2)**2*(1 + y**2) + z**2", "1", Word.UNDECIDED),
+    ],
+)
+def test_members_of_families_at_square_roots(potential: str, damping: str, wanted: Word) -> None:
+    text = OPEN_VALLEY.replace("V,", f"{potential},").replace("d*", f"{damping}*")
+    system = mbsym.loads(text).system
+    (family,) = relative_equilibria(system, given_values(system, {})).families
+    assert any(not x.exact for x in family.sample)
+    assert family.verdict.word is wanted
+
+
+def test_a_family_within_another_is_not_told_again() -> None:
+    """grad V = 2 F (3 x^2, 2 y, 2 z), F = x^3 + y^2 + z^2 - 2, vanishes on F = 0 and at 0: x = F = 0 lies in F = 0."""
+    text = OPEN_VALLEY.replace("V,", "(x**3 + y**2 + z**2 - 2)**2,").replace("d*", "0*")
+    system = mbsym.loads(text).system
+    found = relative_equilibria(system, given_values(system, {}))
+    assert [family.dimension for family in found.families] == [2]
+    assert len(found.equilibria) == 1
+    # F = x (y^2 + z^2 - 1): the plane and the cylinder are two, and their circle is in both
+    crossed = mbsym.loads(OPEN_VALLEY.replace("V,", "x**2*(y**2 + z**2 - 1)**2,").replace("d*", "0*")).system
+    assert [family.dimension for family in relative_equilibria(crossed, given_values(crossed, {})).families] == [2, 2]

@@ -9,11 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cmp_to_key
 from itertools import pairwise
 from typing import Any
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
+
+from mbsym.algebra import rationals
+from mbsym.algebra.polynomial_systems import by_square_root
+from mbsym.expressions.tree import Expression
 
 Rational = Any  # a flint.fmpq
 Integer = Any  # a flint.fmpz_poly
@@ -184,6 +189,13 @@ def number(root: Root) -> Number:
     if root.polynomial.degree() == 1:
         return fmpq(-root.polynomial[0], root.polynomial[1])
     return AlgebraicNumber(root.polynomial, root.low, root.high)
+
+
+def in_square_roots(x: Number) -> Fraction | Expression | None:
+    """A rational number, or one of degree 2 as an expression; None of others."""
+    if isinstance(x, fmpq):
+        return rationals.fraction(x)
+    return by_square_root(x.modulus, x.enclosure(80)) if isinstance(x, AlgebraicNumber) else None
 
 
 def compare(a: Number, b: Number) -> int:

@@ -189,7 +189,8 @@ class Trials:
 
     At each the mass matrix of the first approximation is positive definite, rows of first order apart.  The first are
     those that the description gives.  ``verdict_at`` is the exact verdict of the first approximation, ``decided_at``
-    what the nonlinear system adds where that leaves it open; ``solved`` are the parameters that follow from the
+    what the nonlinear system adds where that leaves it open, ``verdict_where_zero`` that wherever a polynomial in
+    parameters vanishes; ``solved`` are the parameters that follow from the
     conditions of problem 4.
     """
 
@@ -201,9 +202,11 @@ class Trials:
         solved: Mapping[str, Polynomial],
         verdict_at: Judge,
         decided_at: Callable[[Verdict, Mapping[str, Fraction]], Verdict],
+        verdict_where_zero: Callable[[Polynomial], Verdict | None] = lambda _: None,
     ) -> None:
         self.system, self.ring, self.solved = system, ring, solved
         self.numbers = Rationals({}, {})
+        self.verdict_where_zero = verdict_where_zero
         self._known: dict[str, Tried] = {}
         self._dependent = {relation.name for relation in system.relations} | set(solved)
         self._mass_matrix, self._verdict_at, self._decided_at = mass_matrix, verdict_at, decided_at

@@ -309,11 +309,14 @@ class Region:
         return self.cleared(part.ring.lift(x) if isinstance(part.ring, ParameterRing) else ring.reduce(x))
 
     def on_border(self, inequality: Inequality, others: Sequence[Inequality] = ()) -> Verdict:
-        """What holds of exactly linear equations where ``wanted`` is an equality and ``others`` hold.
+        """What holds where ``wanted`` is an equality and ``others`` do, which exactly linear equations know of.
 
         "depends on the parameters" also where that was not found.
         """
-        if not (self.own and self.derived.balance.exactly_linear):
+        if not self.derived.balance.exactly_linear:
+            declared = Region(self.derived, self.claim, own=False)
+            return self.derived.trials.verdict_where_zero(declared.cleared(inequality.polynomial)) or depends()
+        if not self.own:
             return depends()
         verdicts = []
         try:

@@ -413,6 +413,7 @@ def _described(group: Sequence[Solution]) -> RelativeEquilibrium:
         len(group),
         best.beyond,
         {x.name: best.place.balls[x.name] for x in best.values},
+        best.chart.rest.system,
     )
 
 
@@ -602,6 +603,7 @@ class _ChartSearch(SearchInBoxes):
                 self.verdict(place),
                 self.chart.label,
                 {name: place.balls[name] for name in self.occurring},
+                self.rest.system,
                 family.special,
             )
         )

@@ -19,10 +19,12 @@ from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
+from mbsym.expressions.tree import Expression
 from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.states import SEED
 from mbsym.mechanics.symmetry import Reflection, reflections
+from mbsym.model.system import System
 from mbsym.problems.relative_equilibria.conditions import Case, Conditions
 from mbsym.problems.relative_equilibria.orbits import Orbits
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
@@ -147,12 +149,13 @@ class Listing(Conditions):
             if residue is not None and residue.degree() <= 0:
                 exact = rationals.fraction(residue[0])
                 text = str(exact)
-                return CoordinateValue(name, text if len(text) <= 14 else short(value), value, False, len(text) <= 14)
-            return CoordinateValue(name, short(value), value, False, False)
+                told = len(text) <= 14
+                return CoordinateValue(name, text if told else short(value), value, False, told, place.exactly(name))
+            return CoordinateValue(name, short(value), value, False, False, place.exactly(name))
         if proof_of := self._twelfths(place, name, value):
             return CoordinateValue(name, proof_of, value, True, True)
         value = turned(value, ring.angles[name])
-        return CoordinateValue(name, short(value), value, True, False)
+        return CoordinateValue(name, short(value), value, True, False, place.exactly(name))
 
     def _twelfths(self, place: Place, name: str, value: float) -> str:
         """``k*pi/12`` if the angle is such a multiple, proved by (cos + i sin)^24 = 1 in the number field."""
@@ -242,7 +245,8 @@ EXACT, CERTIFIED = "exact", "proved in a box"
 class CoordinateValue:
     """One coordinate at an equilibrium: ``text`` is exact if ``exact`` (``pi/2``, ``5/4``), else rounded.
 
-    ``angle``: it occurs under sine and cosine only, so it is meant modulo a full turn.
+    ``angle``: it occurs under sine and cosine only, so it is meant modulo a full turn.  ``exactly``: the value as an
+    expression, where ``text`` is rounded and it is known.
     """
 
     name: str
@@ -250,6 +254,7 @@ class CoordinateValue:
     value: float
     angle: bool
     exact: bool
+    exactly: Expression | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -260,7 +265,7 @@ class RelativeEquilibrium:
     angles than the description's, because those are singular here (empty: none).  ``free``: coordinates that do not
     occur in f, so that every value of them does.  ``described``: how many sets of coordinates mean this configuration.
     ``beyond``: the negative lengths of polar coordinates, behind their singularity.  ``enclosures``: balls that hold
-    the coordinates.
+    the coordinates; ``system``: at numbers, in the angles of ``coordinates_of``.
     """
 
     values: tuple[CoordinateValue, ...]
@@ -271,6 +276,7 @@ class RelativeEquilibrium:
     described: int = 1
     beyond: tuple[str, ...] = ()
     enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    system: System | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -288,6 +294,7 @@ class EquilibriumFamily:
     verdict: Verdict
     coordinates_of: str = ""
     enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    system: System | None = field(default=None, compare=False, repr=False)
     special: bool = field(default=False, compare=False, repr=False)
 
 

@@ -14,11 +14,17 @@ from flint import arb, ctx, fmpq, fmpq_poly, fmpz
 from mbsym.algebra import rationals
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
-from mbsym.algebra.polynomial_systems import AlgebraicPoint, context, inverse_modulo
+from mbsym.algebra.polynomial_systems import (
+    AlgebraicPoint,
+    by_square_root,
+    context,
+    inverse_modulo,
+    minimal_polynomial,
+)
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.terms import residue
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import number, substitute
+from mbsym.expressions.tree import Call, Expression, multiply, number, substitute
 from mbsym.formulas.python import python_text
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Rest
@@ -118,6 +124,23 @@ class Place:
             return fmpq_poly([x.leading_coefficient()]) if x.is_constant() else None
         generators = {k: self._generator(k) for k in occurring([x])}
         return None if None in generators.values() else residue(x, generators, self.modulus)
+
+    def exactly(self, name: str) -> Expression | None:
+        """A coordinate in square roots of rationals, an angle as 2 atan(sin/(1 + cos)); None where it is neither."""
+        if self.modulus is None:
+            return None
+        if name not in self.ring.angles:
+            return self._in_square_roots(self.residue(self.ring.generator("coordinate", name)))
+        s, c = (self.residue(self.ring.generator(kind, name)) for kind in ("sine", "cosine"))
+        if s is None or c is None or c == fmpq_poly([-1]):
+            return None
+        tangent = self._in_square_roots(s * inverse_modulo(c + 1, self.modulus) % self.modulus)
+        return None if tangent is None else multiply(number(2 * self.ring.angles[name]), Call("atan", tangent))
+
+    def _in_square_roots(self, element: Any) -> Expression | None:
+        if element is None:
+            return None
+        return by_square_root(minimal_polynomial(element, self.modulus), self.enclose(element))
 
     def _generator(self, index: int) -> Any:
         if index not in self._exact:

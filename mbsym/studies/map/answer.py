@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq
 
 from mbsym.algebra.plane import Point
+from mbsym.algebra.plane.numbers import in_square_roots
 from mbsym.expressions.message import Counted, Message, joined
+from mbsym.expressions.tree import Expression
+from mbsym.expressions.tree import text as written
 from mbsym.maps.boundaries import Origin
 from mbsym.maps.boxes import BoxMap, Method
 from mbsym.maps.equilibria_map import EquilibriaMap
@@ -325,7 +328,8 @@ def _nonlinear(chart: Map, planes: Sequence[Map]) -> Iterator[str]:
                     point = (cell.sample.x, cell.sample.y)
                 if isinstance(chart, Stack):  # the slice's own value; without a rational one nothing is asked
                     point = (*point, plane.values[chart.axis.name])
-                at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(chart.axes, point, strict=True))
+                told = (written(root) if isinstance(root := in_square_roots(x), Expression) else x for x in point)
+                at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(chart.axes, told, strict=True))
                 decided.setdefault(cell.nonlinear.word.value, []).append(at)
     for word, places in decided.items():
         where = "; ".join(places[:MOST_POINTS]) + ("; ..." if len(places) > MOST_POINTS else "")
