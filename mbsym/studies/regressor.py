@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.message import Message
 from mbsym.studies.described import public
 from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Watch, failed
 
