@@ -894,12 +894,12 @@ class Ring(Algebra[Polynomial]):
         dense = 1
         for span in spans:
             dense = min(dense * (1 + span), 2**64)
-        candidates = min(terms * powers, terms * dense)
-        if candidates > PRODUCT_BUDGET:  # the same again, term by term
+        candidates, each = min(terms * powers, terms * dense), _bytes(x, max(spans))
+        if candidates > PRODUCT_BUDGET or min(candidates, dense) * each > MEMORY_BUDGET:  # the same again, term by term
             self.spend(10 * terms)
             lengths = [(index, len(images[index])) for index in touched]
             candidates = sum(min(dense, _expanded(monomial, lengths)) for monomial in x.monoms())
-        if candidates > PRODUCT_BUDGET or min(candidates, dense) * _bytes(x, max(spans)) > MEMORY_BUDGET:
+        if candidates > PRODUCT_BUDGET or min(candidates, dense) * each > MEMORY_BUDGET:
             raise NoClosedForm(
                 "a substitution into [[terms]] terms may lead to [[candidates]]",
                 terms=terms,

@@ -8,6 +8,7 @@ derivatives, Poisson brackets, substitution.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import mul
 from typing import Any
 
 #: The exponents of a product of powers, one for each variable.
@@ -69,16 +70,20 @@ class Truncated:
         return self + (-other)
 
     def __mul__(self, other: Truncated) -> Truncated:
-        total: Coefficients = {}
-        order = self.space.order
-        right = [(key, sum(key), value) for key, value in other.coefficients.items()]
+        # Exponents are digits of a number while their sums are at most the order: it is quicker to add numbers.
+        order, base = self.space.order, self.space.order + 1
+        weights = [base**k for k in range(self.space.variables)]
+        right = [(sum(map(mul, b, weights)), sum(b), y) for b, y in other.coefficients.items()]
+        fitting: dict[int, list[tuple[int, Any]]] = {}
+        total: dict[int, Any] = {}
         for a, x in self.coefficients.items():
-            left = order - sum(a)
-            for b, degree, y in right:
-                if degree <= left:
-                    key = tuple(map(int.__add__, a, b))
-                    total[key] = total[key] + x * y if key in total else x * y
-        return Truncated(self.space, total)
+            first, left = sum(map(mul, a, weights)), order - sum(a)
+            if left not in fitting:
+                fitting[left] = [(second, y) for second, degree, y in right if degree <= left]
+            for second, y in fitting[left]:
+                key = first + second
+                total[key] = total[key] + x * y if key in total else x * y
+        return Truncated(self.space, {tuple(key // w % base for w in weights): x for key, x in total.items()})
 
     def scaled(self, factor: Any) -> Truncated:
         return Truncated(self.space, {key: value * factor for key, value in self.coefficients.items()})

@@ -13,7 +13,9 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
+from mbsym.expressions.tree import text
 from mbsym.formulas import latex, mathml, python
+from mbsym.model.substitution import held
 from mbsym.problems.claims.result import in_parameters
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.integrals import ENERGY
@@ -37,6 +39,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     """Families of the integrals of problem 7, of those that claims have proved, and of further polynomial ones.
 
     Of equations in speeds and unit vectors, or of Lagrange's in rates, sines and cosines of angles and positions.
+    Inputs keep their values on the unperturbed motion.
 
     Raises NoClosedForm where the field is not polynomial or nothing but the geometry is conserved.
     """
@@ -44,6 +47,10 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     from mbsym.problems.invariant_sets.branches import arena
     from mbsym.problems.invariant_sets.problem import invariant_sets
 
+    if analysis.system.inputs:
+        values = tuple((signal.name, text(signal.held)) for signal in analysis.system.inputs)
+        still = type(analysis)(held(analysis.system), analysis.problems, analysis.terms, analysis.suggests)
+        return replace(invariant_sets_of(still), inputs=values)
     count = len(analysis.constraints.free if analysis.system.constraints else analysis.system.coordinates)
     if not analysis.system.speeds and count > MOST_ANGLES:
         raise NoClosedForm(
@@ -68,7 +75,8 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     if twice:  # grad K with respect to both would not be that of a function of the angle
         names = ", ".join(y for x in twice for y in (x, f"sin({x})"))
         raise NoClosedForm("[[names]] are functions of each other: they cannot all be variables", names=names)
-    if lagrangian and not all(_is_of_one_angle(field, relation) for relation in field.relations):
+    vectors = {name for body in analysis.system.bodies for vector in body.orientation for name in vector.components}
+    if not all(_is_of_one_angle(field, p) or _names(field, p) <= vectors for p in field.relations):
         raise NoClosedForm(
             "constraints tie positions: families of integrals are looked at in coordinates that keep them",
             remedy="choose such coordinates, or write a constraint as  relation: x = r*phi; a closed loop has none as "
@@ -97,8 +105,13 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
 
 def _is_of_one_angle(field: PolynomialField, relation: Any) -> bool:
     """Whether it is sin^2 + cos^2 = 1."""
-    held = [name for k, name in zip(field.places, field.variables, strict=True) if relation.degrees()[k] > 0]
-    return len(held) == 2 and all(name.startswith(("sin(", "cos(")) for name in held)
+    names = _names(field, relation)
+    return len(names) == 2 and all(name.startswith(("sin(", "cos(")) for name in names)
+
+
+def _names(field: PolynomialField, p: Any) -> set[str]:
+    """The variables that occur."""
+    return {name for k, name in zip(field.places, field.variables, strict=True) if p.degrees()[k] > 0}
 
 
 def _remedy(system: System) -> str:

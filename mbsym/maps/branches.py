@@ -424,8 +424,9 @@ class Floats:
         self.ring, self.parameter = ring, parameter
         self._tables: dict[int, tuple[Any, list[tuple[float, tuple[tuple[int, int], ...]]]]] = {}
 
-    def __call__(self, x: Polynomial, values: Mapping[str, float]) -> float:
-        return self._total(x, values, {})
+    def __call__(self, x: Polynomial, values: Mapping[str, float], known: dict[int, float] | None = None) -> float:
+        """``known``: generators at these values, to which those are added that are met."""
+        return self._total(x, values, {} if known is None else known)
 
     def _total(self, x: Polynomial, values: Mapping[str, float], known: dict[int, float]) -> float:
         if id(x) not in self._tables:
@@ -495,8 +496,9 @@ def _newton(curve: Curve, numbers: Floats, guess: Array, p: float) -> Array | No
     for _ in range(MOST_STEPS):
         values = {**dict(zip(curve.names, q.tolist(), strict=True)), curve.parameter: p}
         try:
-            f = np.array([numbers(x, values) for x in curve.forcing])
-            slopes = np.array([[numbers(x, values) for x in row] for row in curve.slopes])
+            known: dict[int, float] = {}
+            f = np.array([numbers(x, values, known) for x in curve.forcing])
+            slopes = np.array([[numbers(x, values, known) for x in row] for row in curve.slopes])
             step = np.linalg.solve(slopes, f)
         except (ValueError, ArithmeticError, KeyError, np.linalg.LinAlgError):
             return None

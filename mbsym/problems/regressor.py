@@ -15,6 +15,9 @@ Robots (2002), chapter 9.
 
 That the kept columns are independent holds for almost all values of parameters that are symbols; exactly for numbers.
 
+Under constraints J q' + j = 0 they are those of the tree without them: tau + J^T lambda = Y theta, and J, j hold no
+inertial parameter.  On the constraints N^T tau = N^T Y theta, J N = 0, may tell fewer sums than Y does.
+
 Sources: H. Mayeda, K. Yoshida and K. Osuka, Base parameters of manipulator dynamic models, IEEE Trans. Robotics
 Automation 6 (1990) 312-321; M. Gautier and W. Khalil, Direct calculation of minimum set of inertial parameters of
 serial robots, ibid. 368-373.
@@ -77,7 +80,7 @@ class Regressor:
     """``columns`` of Y, one for each of ``base``, as nodes of ``program`` with the names of the system as inputs.
 
     ``standard`` are all parameters, ``without_effect`` those that no motion tells.  ``besides``: whether there are
-    loads that tau = Y beta leaves out.
+    loads that tau = Y beta leaves out; ``tied``: whether constraints are, whose J^T lambda are forces besides.
     """
 
     system: System
@@ -87,6 +90,7 @@ class Regressor:
     program: Program
     columns: tuple[tuple[Node, ...], ...]
     besides: bool
+    tied: bool = False
 
 
 def regressor(scene: Scene[Polynomial]) -> Regressor:

@@ -61,6 +61,7 @@ def regressor_json(regressor: Regressor) -> str:
         ],
         without_effect=[doc.Parameter(standard.body, standard.kind) for standard in regressor.without_effect],
         other_loads=regressor.besides,
+        constraints=regressor.tied,
     )
 
 
@@ -119,6 +120,7 @@ def regressor_module(regressor: Regressor) -> str:
         Y=writer.function(regressor.program, [x for _, _, x in nonzero]),
         values=writer.function(program, values),
         besides=regressor.besides,
+        tied=regressor.tied,
     )
 
 
@@ -145,3 +147,8 @@ def sentences(regressor: Regressor) -> Iterator[tuple[str, str]]:
     yield "how", Message(text)
     if regressor.besides:
         yield "besides", Message("tau = Y base leaves out the loads that are no uniform gravity")
+    if regressor.tied:
+        told = (
+            "tau is that of the tree without constraints: tau + J^T lambda = Y base; on them fewer sums may be enough"
+        )
+        yield "constraints", Message(told)

@@ -1,11 +1,10 @@
-"""``mbsym regressor``: base parameters of an open tree, and the regressor that belongs to them."""
+"""``mbsym regressor``: base parameters of a tree, and the regressor that belongs to them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.message import Message
 from mbsym.studies.described import public
 from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Watch, failed
 
@@ -19,7 +18,8 @@ class Request:
 
     The generalised forces are tau = Y(q, q', q'') theta + other loads, with ten parameters of each body: mass m, first
     moment h = m c, tensor J about its connection point.  Said is which sums of them are all that enters (base
-    parameters), which enter not at all, and how they are known: by identities of the exact ring.
+    parameters), which enter not at all, and how they are known: by identities of the exact ring.  Constraints add
+    J^T lambda to tau: what is found is the regressor of the tree without them.
 
     Written are regressor.py (Y as a program of NumPy, and the sums' values), regressor.tex and regressor.json.  Exit
     codes: 0 done, 1 there is no answer or it was not written, 2 something is wrong.
@@ -32,7 +32,9 @@ class Request:
 
 @public(Request)
 def regressor(context: Asked, request: Request, watch: Watch) -> Regressor:
-    """Base parameters of an open tree under uniform gravity, and their regressor: ``mbsym regressor``.
+    """Base parameters of a tree under uniform gravity, and their regressor: ``mbsym regressor``.
+
+    Of constraints those are put in that give a coordinate by others; without the rest the tree is taken.
 
         >>> import mbsym
         >>> found = mbsym.regressor("systems/double-pendulum.yaml")
@@ -42,10 +44,13 @@ def regressor(context: Asked, request: Request, watch: Watch) -> Regressor:
     Raises DescriptionError, ``mbsym.algebra.failures.Failure``.
     """
     from mbsym.analysis import Analysis
+    from mbsym.analysis.constrained import in_free_coordinates
     from mbsym.problems.regressor import regressor as found_of
 
     watch("base parameters")
-    return found_of(Analysis(context.system.without_speeds).scene)
+    system = in_free_coordinates(context.system.without_speeds)
+    found = found_of(Analysis(replace(system, constraints=(), dependent=())).scene)
+    return replace(found, tied=bool(system.constraints))
 
 
 def answer(context: Asked, request: Request, derived: Regressor) -> Answer:
@@ -64,12 +69,6 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
     return failed(error, "no base parameters")
 
 
-#: Under constraints.
-INSTEAD = Message(
-    "without 'constraints' base parameters of the open tree are found: they suffice, as constraints add J^T lambda "
-    "alone"
-)
-
 STUDY = Study(
-    "regressor", Request, regressor.derive, answer, refusal, instead=INSTEAD, held=False, out=Folder(json=True)
+    "regressor", Request, regressor.derive, answer, refusal, constraints=True, held=False, out=Folder(json=True)
 )

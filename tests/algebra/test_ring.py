@@ -465,3 +465,15 @@ def test_formulas_of_many_generators_are_bounded_by_their_memory() -> None:
         else:
             with pytest.raises(NoClosedForm, match="26565 terms are beyond the budget of 2"):
                 ring.reduce(ring.times(total, total))
+
+
+def test_three_squares_of_long_sums_are_put_in() -> None:
+    """x**2 + y**2 + z**2, 16 terms for each of x, y, z: 3 * 136 products, and not those of one in the other."""
+    letters = [f"{name}{k}" for name in "abcdef" for k in range(16)]
+    ring = Ring([], [], ["x", "y", "z", *letters], {}, positive=[])
+    held = [ring.generator("parameter", name) for name in letters]
+    sums = [sum(held[k : k + 16], ring.zero) for k in (0, 16, 32)]
+    x, y, z = (ring.generator("parameter", name) for name in "xyz")
+    images = dict(zip((ring.index("parameter", name) for name in "xyz"), sums, strict=True))
+    others = sum(held[48:52], ring.zero)
+    assert ring.substitute(x * x + y * y + z * z + others, images) == sum((one * one for one in sums), others)

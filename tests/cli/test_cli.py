@@ -401,7 +401,7 @@ def test_every_shipped_system_runs_and_checks_itself(path: Path, tmp_path: Path)
 
 @pytest.mark.parametrize(
     ("command", "instead"),
-    [("average", "simulate"), ("symmetries", "run --problems 7"), ("regressor", "without 'constraints'")],
+    [("average", "simulate"), ("symmetries", "run --problems 7")],
 )
 def test_commands_that_know_no_constraints_say_which_they_are(command: str, instead: str) -> None:
     """And what works: a four-bar has no coordinates that keep it, a hint that asks for them alone is of no use."""
@@ -411,12 +411,3 @@ def test_commands_that_know_no_constraints_say_which_they_are(command: str, inst
     assert f"'mbsym {command}' takes no constraint but relations that give a coordinate" in told
     assert instead in told
     assert "a closed loop has none as a rule" in told
-
-
-def test_the_open_tree_of_a_loop_has_base_parameters(tmp_path: Path) -> None:
-    text = (SYSTEMS / "four-bar.yaml").read_text(encoding="utf-8")
-    lines = [x for x in text.splitlines() if not x.startswith(("constraints:", "  - coincide", "dependent:"))]
-    path = tmp_path / "tree.yaml"
-    path.write_text("\n".join(lines), encoding="utf-8")
-    done = mbsym("regressor", path, "--out", tmp_path / "out")
-    assert done.exit_code == 0, done.output

@@ -420,3 +420,19 @@ def test_what_vanishes_on_a_set_alone_is_zero_there():
     assert [len(factor) for factor in rests.first.factors] == [3]
     assert all(not one.unless for one in rests.first.necessary)
     assert rests.real
+
+
+def test_inputs_keep_their_values_on_the_unperturbed_motion(tmp_path):
+    """A free body under a moment u about its third axis, which is zero: Euler's permanent rotations."""
+    text = HEAVY[: HEAVY.index("    orientation")]
+    text = text.format(parameters="A: positive, B: positive, C: positive", centre="[0, 0, 0]", inertia="[A, B, C]")
+    text += "loads: [{torque: {body: body, axes: body, components: [0, 0, u]}}]\ninputs: {u: {meaning: wheel}}\n"
+    found = mbsym.load(filed(tmp_path / "driven.yaml", text), problems=()).invariant_sets
+    assert found.inputs == (("u", "0"),)
+    about = {
+        tuple(name for name, value in one.solved if str(value) == "0")
+        for family in found.families
+        for one in family.sets
+        if len(one.free) == 1
+    }
+    assert about == {("p", "q"), ("p", "r"), ("q", "r")}

@@ -260,7 +260,6 @@ loads: [{uniform gravity: {vector: [0, 0, -g]}}]
 @pytest.mark.parametrize(
     ("file", "reason"),
     [
-        ("four-bar.yaml", "constraints"),
         ("shaken-pendulum.yaml", "moves as prescribed"),
         ("gravity-gradient.yaml", "base parameters"),
     ],
@@ -292,6 +291,44 @@ def test_the_command_writes_what_its_schema_says(tmp_path: Path) -> None:
         own.regressor([0, 0], [0, 0], [0, 0], {})
     again = mbsym.regressor(SHIPPED / "double-pendulum.yaml")
     assert [sum_of(one) for one in again.base][2] == "hy(first rod) - l1*m(second rod)"
+
+
+PARALLELOGRAM = """
+mbsym: 1
+name: parallelogram in gravity
+parameters: {l: 2, s: 1, m: 3, g: 9.81}
+bodies:
+  - {name: crank, attached to: 0, rotation: {axes: [3], angles: [a]}, mass centre: [s/2, 0, 0], mass: m,
+     inertia about: mass centre, inertia: [0, m*s**2/12, m*s**2/12]}
+  - {name: coupler, attached to: crank, connection point: [s, 0, 0], rotation: {axes: [3], angles: [b]},
+     mass centre: [l/2, 0, 0], mass: m, inertia about: mass centre, inertia: [0, m*l**2/12, m*l**2/12]}
+  - {name: rocker, attached to: 0, connection point: [l, 0, 0], rotation: {axes: [3], angles: [c]},
+     mass centre: [s/2, 0, 0], mass: m, inertia about: mass centre, inertia: [0, m*s**2/12, m*s**2/12]}
+loads: [{uniform gravity: {vector: [0, -g, 0]}}]
+constraints:
+  - coincide: [{body: coupler, point: [l, 0, 0]}, {body: rocker, point: [s, 0, 0]}]
+dependent: [b, c]
+"""
+
+
+@pytest.mark.parametrize("speeds", [False, True])
+def test_reactions_of_a_loop_fall_out_of_its_regressor(tmp_path: Path, speeds: bool) -> None:
+    """The coupler of a parallelogram does not turn: N = (1, -1, 1), N^T Y base = 5/3 m s^2 a'' + 2 m g s cos(a)."""
+    text = PARALLELOGRAM
+    if speeds:
+        text = text.replace("angles: [c]}", "angles: [c]}, speeds: {w: c_dot}").replace("[b, c]", "[b, w]")
+    path = tmp_path / "loop.yaml"
+    path.write_text(text, encoding="utf-8")
+    done = invoked("regressor", path, "--out", tmp_path, code=0)
+    assert "tau + J^T lambda = Y base" in done.stdout
+    assert json.loads((tmp_path / "regressor.json").read_text(encoding="utf-8"))["constraints"] is True
+    own = ModuleType("regressor")
+    exec((tmp_path / "regressor.py").read_text(encoding="utf-8"), own.__dict__)
+    m, s, g, n = 3.0, 1.0, 9.81, np.array([1.0, -1.0, 1.0])
+    base = own.base_parameters({"l": 2, "s": s, "m": m, "g": g})
+    for a, rate, second in np.random.default_rng(3).normal(size=(5, 3)):
+        Y = own.regressor(n * a, n * rate, n * second, {"l": 2, "s": s, "m": m, "g": g})
+        assert n @ Y @ base == pytest.approx(5 / 3 * m * s**2 * second + 2 * m * g * s * np.cos(a), rel=1e-12)
 
 
 def test_numbers_are_told_as_they_are_typed() -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from conftest import invoked
+from scipy.integrate import solve_ivp
 from truth.test_accuracy_constrained import BALL, SLEIGH
 
 import mbsym
@@ -55,3 +58,29 @@ def test_a_plan_says_what_is_proved_of_its_run() -> None:
     proved = found.plan.bound.proved
     assert proved is not None
     assert proved <= found.plan.bound.total
+
+
+THREE_BARS = Path(__file__).parents[1] / "cases" / "constraints" / "par3.yaml"
+
+
+def test_a_third_bar_that_follows_is_named_and_the_hint_works(tmp_path: Path) -> None:
+    """Three uprights of m l^2/3 and a beam that does not turn: 2 a'' = -5/2 g cos(a), the same for all bars."""
+    text = THREE_BARS.read_text(encoding="utf-8")
+    asked = ("--time", "0.1", "--certify", "1e-9", "--out", tmp_path / "out")
+    done = invoked("simulate", THREE_BARS, *asked, code=2)
+    assert "coincide 2, component 2: this follows from other constraints" in done.stderr
+    assert "relation: a = b  for a second 'coincide'" in done.stderr
+    head, second = text.index("  - coincide: [{body: h, point: [2, 0, 0]}"), text.index("motion:")
+    found = mbsym.simulate(
+        mbsym.loads(f"{text[:head]}  - relation: a2 = a1\n{text[second:]}"), 0.1, samples=2, certify=1e-9
+    )
+    proof = found.certificate
+    assert proof is not None
+    assert proof.whole
+    swing = solve_ivp(
+        lambda t, x: [x[1], -1.25 * 9.81 * np.cos(x[0])], [0, 0.1], [-0.1, 0.0], rtol=1e-12, atol=1e-13
+    ).y[0, -1]
+    for name, sign in (("a0", 1), ("a1", 1), ("a2", 1), ("b", -1)):
+        i = found.system.coordinates.index(name)
+        assert abs(sign * swing - proof.centre[i, -1]) < 1e-10
+        assert proof.radius[i, -1] < 1e-9

@@ -83,8 +83,15 @@ class Certificate:
 
 def analytic(dynamics: Dynamics) -> None:
     """Raises NotAnalytic where the equations of motion or their Jacobian have a function without a power series."""
+    tied = dynamics.constraints
     for code in (dynamics.right_hand_side, dynamics.jacobian):
-        function_of(code, GUARD)
+        try:
+            function_of(code, GUARD)
+        except NotAnalytic as error:
+            name = str(error)
+            if name != "sign" or tied is None or not tied.chosen.dependent:
+                raise
+            raise NotAnalytic(name, tuple(row.label for row in tied.redundant)) from error
 
 
 def certified(

@@ -202,7 +202,14 @@ def model(ring: Ring, coefficients: Sequence[arb], rest: float = 0.0) -> Model:
 
 
 class NotAnalytic(Exception):
-    """A function in the equations without a power series; its name."""
+    """A function in the equations without a power series; its name.
+
+    ``rows``: the labels of constraints that follow from others, where the choice among them brings it in.
+    """
+
+    def __init__(self, name: str, rows: tuple[str, ...] = ()) -> None:
+        super().__init__(name)
+        self.rows = rows
 
 
 def _exponential(x: Any) -> tuple[Any, Any]:

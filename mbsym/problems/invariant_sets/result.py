@@ -146,6 +146,8 @@ class InvariantSets(Shown):
     written: tuple[tuple[str, str], ...] = ()
     #: Integrals whose gradients depend on those of ``integrals`` at a random point, and that are no sums of these.
     left_out: tuple[str, ...] = ()
+    #: The constant values of inputs for which all of this is so.
+    inputs: tuple[tuple[str, str], ...] = ()
 
     @property
     def complete(self) -> bool:

@@ -96,3 +96,6 @@ class Regressor(Hashed, frozen=True, kw_only=True):
     base: Annotated[list[Base], "the columns of Y in their order"]
     without_effect: Annotated[list[Parameter], "parameters that no motion tells"]
     other_loads: Annotated[bool, "whether there are loads besides uniform gravity, which tau leaves out"]
+    constraints: Annotated[
+        bool, "whether there are constraints: tau + J^T lambda = Y base, and fewer sums may be enough"
+    ]

@@ -35,6 +35,9 @@ def opening(invariant_sets: InvariantSets) -> Iterator[Said]:
         "Families $K$ of first integrals with constant multipliers; a motion that begins where $\\mathrm{grad}\\, K = "
         "0$ stays there."
     )
+    if invariant_sets.inputs:
+        values = ", ".join(f"{name} = {value}" for name, value in invariant_sets.inputs)
+        yield say("The inputs are constant, as on the unperturbed motion: [[values]].", values=values)
     for k, (name, formula) in enumerate(invariant_sets.integrals):
         yield say("[[symbol]], [[name]]: [[formula]].", symbol=_integral(k), name=worded(name), formula=formula)
     if invariant_sets.left_out:

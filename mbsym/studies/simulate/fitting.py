@@ -567,6 +567,12 @@ def derived(context: Asked, request: Command, watch: Watch) -> Result:
     except NotAnalytic as error:
         message = Message("[[what]] in the equations has no power series", what=str(error))
         hint = "leave --certify out: enclosures go through power series"
+        if error.rows:
+            told = (
+                "[[rows]]: this follows from other constraints; which are used is chosen on the way, by no power series"
+            )
+            message = Message(told, rows="; ".join(error.rows))
+            hint = "write constraints of which none follows from others:  relation: a = b  for a second 'coincide'"
         reasons = [Unfit("--certify", "not-analytic", message, hint)]
     except Unvaried as error:
         reasons = [Unfit(f"--vary {name}", "bad-variation", text, hint or None) for name, text, hint in error.reasons]

@@ -106,6 +106,7 @@ class InvariantSets(Part, frozen=True):
     stand_for: Annotated[
         dict[str, str], "variables that stand for something else: sin_theta for sin(theta)", From("written")
     ]
+    inputs: Annotated[dict[str, str], "the constant values of the inputs for which all of this is so"]
     families: Annotated[list[Family], "K = first integral + sum multiplier * integral"]
     provided_nonzero: Annotated[
         list[str], "polynomials in the parameters that were taken not to vanish", From("generic")
