@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, compiled_latex, needs_pdflatex
+from conftest import SHIPPED, compiled_latex, derived, needs_pdflatex
 
 import mbsym
 from mbsym.analysis import PROBLEMS
@@ -60,7 +60,7 @@ def test_importing_is_light() -> None:
 
 @pytest.fixture(scope="module")
 def satellite() -> mbsym.analysis.Analysis:  # type: ignore[name-defined]
-    return mbsym.load(SHIPPED / "satellite.yaml")
+    return derived(SHIPPED / "satellite.yaml")
 
 
 def test_everything_shows_itself_in_a_line(satellite) -> None:  # type: ignore[no-untyped-def]

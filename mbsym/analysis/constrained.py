@@ -61,8 +61,9 @@ def in_free_coordinates(system: System) -> System:
     from mbsym.mechanics.variables import ring_of
 
     free = without_explicit_relations(system)
-    ring = ring_of(free)
-    tied = free.constraints and said_rows(over_ring(free, ring))
+    if len(free.constraints) == len(system.constraints):  # nothing is put in
+        return free
+    tied = free.constraints and said_rows(over_ring(free, ring_of(free)))
     return free if tied else replace(free, constraints=())  # rows that say 0 = 0 followed from what is put in
 
 
@@ -129,7 +130,7 @@ def constraints_of(analysis: Analysis) -> Constraints:
     from mbsym.problems.constraints.analysis import constraints_in_speeds
 
     tied = analysis.tied_in_coordinates
-    return constraints_in_speeds(analysis.form, analysis.scene, tied, programs_of(analysis))
+    return constraints_in_speeds(analysis.form, analysis.scene, tied, analysis.tied_programs)
 
 
 def constraints_in_coordinates(analysis: Analysis) -> Constraints:
@@ -182,7 +183,7 @@ def rows_check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.constraints.checks import check_rows
 
-    return check_rows(analysis.form, constraints, programs_of(analysis))
+    return check_rows(analysis.form, constraints, analysis.tied_programs)
 
 
 def motion_check(analysis: Analysis) -> Check | None:
@@ -192,7 +193,7 @@ def motion_check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.constraints.checks import check_embedded
 
-    return check_embedded(analysis.form, closed.constraints, closed.embedded, programs_of(analysis))
+    return check_embedded(analysis.form, closed.constraints, closed.embedded, analysis.tied_programs)
 
 
 def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
@@ -208,12 +209,12 @@ def integrals_check(analysis: Analysis, integrals: Sequence[Integral], truth: Or
         return perturbation.check_integrals(truth or analysis.oracles, analysis.programs, integrals)
     from mbsym.problems.constraints.checks import check_integrals
 
-    return check_integrals(analysis.form, integrals, analysis.constraints, programs_of(analysis))
+    return check_integrals(analysis.form, integrals, analysis.constraints, analysis.tied_programs)
 
 
 def _tied(analysis: Analysis) -> tuple[Constraints, ConstrainedPrograms] | tuple[None, None]:
     """The constraints and their program, where there are some."""
-    return (analysis.constraints, programs_of(analysis)) if analysis.system.constraints else (None, None)
+    return (analysis.constraints, analysis.tied_programs) if analysis.system.constraints else (None, None)
 
 
 def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:

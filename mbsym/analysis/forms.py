@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Ring
-from mbsym.analysis import constrained
 from mbsym.mechanics.kinematics import over_ring
 
 if TYPE_CHECKING:
@@ -84,7 +83,7 @@ def wanted_checks(analysis: Analysis) -> Iterator[str]:
 
 
 def _programs(analysis: Analysis) -> ConstrainedPrograms | None:
-    return constrained.programs_of(analysis) if analysis.system.constraints else None
+    return analysis.tied_programs if analysis.system.constraints else None
 
 
 def _hamilton(analysis: Analysis) -> Check | None:

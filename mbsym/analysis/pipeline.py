@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import SmallParameters
+    from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.claims import ClaimResult
@@ -251,6 +252,7 @@ class Analysis(Stages):
     constraints: Derived[Analysis, Constraints] = Derived(constrained.constraints_of, ("constraints",))
     #: The same in generalised velocities, of a system in speeds.
     tied_in_coordinates: Derived[Analysis, Constraints] = Derived(constrained.constraints_in_coordinates)
+    tied_programs: Derived[Analysis, ConstrainedPrograms] = Derived(constrained.programs_of)
     reactions = Derived["Analysis", tuple[Any, ...]](
         constrained.reactions_of, (constrained.REACTIONS,), knows=Knows.CONSTRAINTS
     )

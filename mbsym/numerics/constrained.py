@@ -19,6 +19,7 @@ drifts of positions are measured by df/ds; coordinates and their velocities are 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -146,6 +147,15 @@ class Constraints:
         if empty:
             self._listed(scenario, equations.program, [row for row in equations.rows if row.name not in empty])
         self._masses = arrays.kernel(masses)
+
+    def from_start(self, scenario: Scenario) -> Constraints:
+        """The same rows from another initial state; nothing is kept of what was found about this one."""
+        other = copy(self)
+        other._scenario = scenario
+        for name, kind in vars(Constraints).items():
+            if isinstance(kind, cached_property):
+                other.__dict__.pop(name, None)
+        return other
 
     def _listed(self, scenario: Scenario, program: Program, rows: Sequence[Row]) -> None:
         self.names: tuple[RowName, ...] = tuple(row.name for row in rows)

@@ -36,6 +36,10 @@ if TYPE_CHECKING:
     from mbsym.numerics.constrained import Constraints
 
 
+#: The last scenario whose constraints were listed, and these.
+_LISTED: list[tuple[Dynamics, Constraints]] = []
+
+
 class Dynamics:
     """The codes of a scenario; each is made when it is first asked for.
 
@@ -54,6 +58,7 @@ class Dynamics:
     def __init__(self, scenario: Scenario, ring: Ring | None = None, apart: bool = False) -> None:
         self.scenario = scenario
         self.system: System = scenario.system
+        self._own_ring = ring is None
         self.ring = ring if ring is not None else ring_of(self.system)
         self.inputs = ("t", *self.system.coordinates, *self.system.velocities)
         self.size = len(self.system.coordinates)
@@ -93,7 +98,23 @@ class Dynamics:
             return None
         from mbsym.numerics.constrained import Constraints
 
-        return Constraints(self.scenario, self.ring, self.apart, self.mass_matrix, self.form)
+        for other, found in _LISTED:  # who leads a start to the constraints goes on from another one
+            if self._has_rows_of(other):
+                return found.from_start(self.scenario)
+        found = Constraints(self.scenario, self.ring, self.apart, self.mass_matrix, self.form)
+        _LISTED[:] = [(self, found)] if self._own_ring else []
+        return found
+
+    def _has_rows_of(self, other: Dynamics) -> bool:
+        """Whether the rows of another are these, from wherever its motion begins."""
+        mine, its = self.scenario, other.scenario
+        return (
+            self._own_ring
+            and (type(self), self.apart) == (type(other), other.apart)
+            and mine.system is its.system
+            and mine.parameters == its.parameters
+            and mine.prescribed == its.prescribed
+        )
 
     @property
     def measured(self) -> Constraints | None:

@@ -99,6 +99,7 @@ class StateDynamics(Dynamics):
     def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
         self.described = described(scenario.system)
         super().__init__(scenario, ring if ring is not None else ring_of(self.described))
+        self._own_ring = ring is None
         self.form = SpeedForm(self.described, self.ring)
 
     @cached_property

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import filed, invoked
+from conftest import SHIPPED, derived, filed, invoked
 from flint import fmpq, fmpz_poly
 from jsonschema import Draft202012Validator
 
@@ -26,7 +26,7 @@ from mbsym.report.schemas import schema
 
 def mapped(name: str, axis: str, low: Any, high: Any, **settings: Any) -> Map:
     found = Axis(axis, Fraction(low), Fraction(high))
-    return exact_map(mbsym.load(f"systems/{name}.yaml"), [found], {k: Fraction(v) for k, v in settings.items()})
+    return exact_map(derived(SHIPPED / f"{name}.yaml"), [found], {k: Fraction(v) for k, v in settings.items()})
 
 
 def test_rouths_critical_mass_ratio_is_an_exact_root() -> None:
@@ -76,7 +76,7 @@ def test_flutter_on_a_line() -> None:
 
 def test_sines_and_cosines_of_a_fraction_of_pi_are_exact() -> None:
     """sin(pi/10) = (sqrt(5) - 1)/4 and cos(pi/10)^2 = (5 + sqrt(5))/8, as polynomials in 2 cos(pi/10)."""
-    analysis = mbsym.load("systems/bicycle.yaml")
+    analysis = derived(SHIPPED / "bicycle.yaml")
     ring = analysis.ring
     sine, cosine = (ring.context.gens().index(ring.generator(kind, "lam")) for kind in ("sine", "cosine"))
     found = constant_of(analysis.system, ring, [sine, cosine])

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 from click.testing import Result
-from conftest import filed, invoked
+from conftest import SHIPPED, derived, filed, invoked
 from flint import fmpq, fmpq_mat
 from jsonschema import Draft202012Validator
 
@@ -42,7 +42,7 @@ FOLLOWER = ("ziegler-damped", (("P", 0, 4), ("b1", 0, 1)), ())
 @cache
 def mapped(name: str, axes: tuple[Any, ...], settings: tuple[Any, ...] = ()) -> Map:
     listed = [Axis(axis, Fraction(low), Fraction(high)) for axis, low, high in axes]
-    return exact_map(mbsym.load(f"systems/{name}.yaml"), listed, {k: Fraction(v) for k, v in settings})
+    return exact_map(derived(SHIPPED / f"{name}.yaml"), listed, {k: Fraction(v) for k, v in settings})
 
 
 def at(found: Map, x: Any, y: Any) -> Any:
@@ -194,7 +194,7 @@ def test_a_lost_boundary_is_found_and_its_verdicts_are_withdrawn(
 
 def test_ctrl_c_keeps_what_is_proved() -> None:
     """Interrupted at the sixth verdict: five are there, the rest says that it was not reached."""
-    analysis = mbsym.load("systems/ziegler-damped.yaml")
+    analysis = derived(SHIPPED / "ziegler-damped.yaml")
 
     def watch(what: str, done: int, whole: int) -> None:
         if what == "verdicts" and done == 5:

@@ -8,6 +8,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from conftest import SHIPPED, derived
 from flint import fmpq
 
 import mbsym
@@ -22,7 +23,7 @@ from mbsym.problems.stability.words import Word
 
 def made(name: str, axes: dict[str, tuple[Any, Any]], **settings: Any) -> Section:
     listed = [Axis(axis, Fraction(low), Fraction(high)) for axis, (low, high) in axes.items()]
-    return section(mbsym.load(f"systems/{name}.yaml"), listed, {k: Fraction(v) for k, v in settings.items()})
+    return section(derived(SHIPPED / f"{name}.yaml"), listed, {k: Fraction(v) for k, v in settings.items()})
 
 
 def complaints(name: str, axes: dict[str, tuple[Any, Any]], **settings: Any) -> set[tuple[Fault, str]]:
@@ -151,7 +152,7 @@ def test_symbols_that_follow_from_one_another_are_refused() -> None:
 
 def test_admissible_inertias_of_a_satellite() -> None:
     """A + B >= C and its turns, for C = 1, and A, B > 0."""
-    analysis = mbsym.load("systems/gravity-gradient.yaml")
+    analysis = derived(SHIPPED / "gravity-gradient.yaml")
     there = section(
         analysis, [Axis("A", Fraction(0), Fraction(2)), Axis("B", Fraction(0), Fraction(2))], {"C": Fraction(1)}
     )
@@ -168,7 +169,7 @@ def test_admissible_inertias_of_a_satellite() -> None:
 
 def test_numbers_against_an_assumption_are_told() -> None:
     """The paper's symbols need p1 > 0."""
-    analysis = mbsym.load("systems/satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     axes = [Axis(name, Fraction(-1), Fraction(1)) for name in PAPER]
     there = section(analysis, axes, {"p1": Fraction(-2, 5), "p2": Fraction(1, 5)})
     assert [one.condition.about for one in admissibility(analysis, there).broken] == ["p1 > 0"]

@@ -1,9 +1,8 @@
 """Hamilton's and Routh's forms against textbooks, and against Lagrange's equations as identities of the ring."""
 
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, derived
 
-import mbsym
 from mbsym.algebra.base import Lowering
 from mbsym.analysis import Unavailable
 from mbsym.expressions.parser import parse_expression
@@ -36,7 +35,7 @@ def formula(ring, text):
 
 def test_the_spherical_pendulum_of_landau_and_lifshitz():
     """Mechanics, section 14, problem 1: the effective potential M_z^2/(2 m l^2 sin^2 theta) - m g l cos theta."""
-    analysis = mbsym.load(SHIPPED / "spherical-pendulum.yaml")
+    analysis = derived(SHIPPED / "spherical-pendulum.yaml")
     found, left = analysis.hamilton, analysis.routh
     potential = "p_psi**2/(2*m*l**2*sin(theta)**2) - m*g*l*cos(theta)"
     whole = formula(found.hamiltonian.ring, f"p_theta**2/(2*m*l**2) + {potential}")
@@ -50,7 +49,7 @@ def test_the_spherical_pendulum_of_landau_and_lifshitz():
 
 def test_a_damper_acts_on_the_momentum():
     """p' = -dH/dq - b q' with q' = p/(J + m l^2), by hand."""
-    found = mbsym.load(SHIPPED / "simple-pendulum.yaml").hamilton
+    found = derived(SHIPPED / "simple-pendulum.yaml").hamilton
     rate = formula(found.hamiltonian.ring, "-m*g*l*sin(theta) - b*p_theta/(J + m*l**2)")
     assert list(found.rates) == [rate]
 
@@ -58,7 +57,7 @@ def test_a_damper_acts_on_the_momentum():
 @pytest.mark.parametrize("name", SMALL)
 def test_canonical_equations_are_lagranges(name):
     """With p = dL/dq' put in:  dH/dp is q', and -dH/dq + Q is dL/dq + Q."""
-    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+    analysis = derived(SHIPPED / f"{name}.yaml")
     found = analysis.hamilton
     ring, _, energies, closed = in_the_same_ring(analysis, found.hamiltonian)
     names = analysis.system.coordinates
@@ -85,7 +84,7 @@ def test_canonical_equations_are_lagranges(name):
 @pytest.mark.parametrize("name", CYCLIC)
 def test_rouths_equations_are_lagranges_without_the_ignored_accelerations(name):
     """With beta = p_c put in:  M_R s'' - f_R = E_s - M_sc M_cc^-1 E_c."""
-    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+    analysis = derived(SHIPPED / f"{name}.yaml")
     found = analysis.routh
     ring, scene, _, closed = in_the_same_ring(analysis, found.function)
     names = list(analysis.system.coordinates)
@@ -106,9 +105,9 @@ def test_rouths_equations_are_lagranges_without_the_ignored_accelerations(name):
 
 def test_what_has_none_says_why():
     with pytest.raises(Unavailable, match="no coordinate is cyclic"):
-        mbsym.load(SHIPPED / "double-pendulum.yaml").routh  # noqa: B018
+        derived(SHIPPED / "double-pendulum.yaml").routh  # noqa: B018
 
 
 def test_systems_in_speeds_have_routhians_in_coordinates():
-    found = mbsym.load(SHIPPED / "clebsch-poisson.yaml").routh
+    found = derived(SHIPPED / "clebsch-poisson.yaml").routh
     assert found.ignored == ("c",)

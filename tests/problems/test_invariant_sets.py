@@ -9,7 +9,7 @@ from itertools import permutations, product
 import numpy as np
 import pytest
 import sympy
-from conftest import SHIPPED, filed
+from conftest import SHIPPED, derived, filed
 
 import mbsym
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
@@ -48,7 +48,7 @@ def _value(formula, **numbers):
 
 @pytest.fixture(scope="module")
 def clebsch():
-    return mbsym.load("systems/clebsch-poisson.yaml").invariant_sets
+    return derived(SHIPPED / "clebsch-poisson.yaml").invariant_sets
 
 
 def test_the_manifolds_of_clebsch_tisserand_brun(clebsch):
@@ -181,7 +181,7 @@ def test_orbital_equilibria_in_quaternions():
     along the orbit, C along its normal and k1 = (C - A)/B, k3 = (C - B)/A, where k1 > k3, k1 k3 > 0 and
     1 + 3 k1 + k1 k3 > 4 sqrt(k1 k3). At 14, 20, 13: k1 = -1/20, k3 = -1/2, and 0.875 > 0.632.
     """
-    found = mbsym.load("systems/gravity-gradient-quaternion.yaml").invariant_sets
+    found = derived(SHIPPED / "gravity-gradient-quaternion.yaml").invariant_sets
     (family,) = found.families
     assert not found.complete
     assert family.unfinished
@@ -209,7 +209,7 @@ def test_orbital_equilibria_in_quaternions():
 
 @pytest.fixture(scope="module")
 def kovalevskaya():
-    return mbsym.load("systems/kovalevskaya.yaml").invariant_sets
+    return derived(SHIPPED / "kovalevskaya.yaml").invariant_sets
 
 
 def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect(kovalevskaya):
@@ -252,7 +252,7 @@ def _texts(one):
 
 def test_a_wrong_sign_in_the_equations_is_seen():
     """The integrals, and so the sets, are those of other equations: what is not invariant is never called so."""
-    loaded = mbsym.load("systems/clebsch-poisson.yaml")
+    loaded = derived(SHIPPED / "clebsch-poisson.yaml")
     known = [x.formula.polynomial for x in loaded.integrals]
     field, transfer = vector_field(loaded.form, loaded.equations, known)
     known = [(x.name, transfer.fraction(x.formula.polynomial)[0]) for x in loaded.integrals]
@@ -305,7 +305,7 @@ def test_definiteness_agrees_with_eigenvalues(clebsch):
 
 def test_definiteness_where_values_have_denominators():
     """A steady motion of Kovalevskaya's top with r = x0 m g gamma3/(C p): projected Hessians by SymPy, at numbers."""
-    found = mbsym.load("systems/kovalevskaya.yaml").invariant_sets
+    found = derived(SHIPPED / "kovalevskaya.yaml").invariant_sets
     family = found.families[0]
     one = next(x for x in family.sets if x.kind is Kind.STEADY and {"p", "gamma3"} == set(x.free))
     state = sympy.symbols("p q r gamma1 gamma2 gamma3")
@@ -359,7 +359,7 @@ def test_an_integral_without_its_denominator_is_named_a_multiple():
 
 def test_a_saddle_is_not_called_degenerate():
     """Henon's and Heiles's: V_xx = A + 2 a y = 0 there, but V_xx V_yy - V_xy^2 = -4 a^2 x^2 is not zero."""
-    (family,) = mbsym.load("systems/henon-heiles.yaml").invariant_sets.families
+    (family,) = derived(SHIPPED / "henon-heiles.yaml").invariant_sets.families
     (saddles,) = [one for one in family.sets if dict(one.solved).keys() >= {"y"} and len(one.relations) == 1]
     assert saddles.variation.outcome is Definiteness.NEVER
 
@@ -381,7 +381,7 @@ motion: {}
 
 def test_at_a_saddle_it_is_not_a_square_that_has_to_be_negative():
     """There V_xx = 0, V_xy = 2 a x: the squares of the roots have the product -4 a^2 x^2; only x = 0 is left."""
-    (family,) = mbsym.load("systems/henon-heiles.yaml").invariant_sets.families
+    (family,) = derived(SHIPPED / "henon-heiles.yaml").invariant_sets.families
     (saddles,) = [one for one in family.sets if dict(one.solved).keys() >= {"y"} and len(one.relations) == 1]
     assert [(str(one.formula), one.relation) for one in saddles.first.necessary if one.relation != ">="] == [("x", "=")]
     assert not any(str(one.formula).startswith("-") for one in saddles.first.necessary if one.relation == ">=")
@@ -392,7 +392,7 @@ def test_conditions_that_a_set_fulfils_by_itself_are_not_told():
 
     What is m2 (l1 + l2)^2 + m1 (l1 - l2)^2 where cos theta2 = 1 never is.
     """
-    (family,) = mbsym.load("systems/double-pendulum.yaml").invariant_sets.families
+    (family,) = derived(SHIPPED / "double-pendulum.yaml").invariant_sets.families
     (rests,) = family.sets
     assert rests.first.necessary
     for one in rests.first.necessary:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import invoked
+from conftest import SHIPPED, derived, invoked
 
 import mbsym
 from mbsym.analysis.stages import Unavailable
@@ -32,7 +32,7 @@ def sufficient(one: StationarySet, **numbers):
 
 def test_conical_motions_of_the_spherical_pendulum():
     """psi'^2 l cos(theta) = g, stable wherever they are (Routh); the poles are singular in these angles."""
-    found = mbsym.load("systems/spherical-pendulum.yaml").invariant_sets
+    found = derived(SHIPPED / "spherical-pendulum.yaml").invariant_sets
     family = found.families[0]
     (one,) = family.sets
     assert (one.kind, one.invariant, one.union) == (Kind.STEADY, True, 1)
@@ -52,7 +52,7 @@ def test_conical_motions_of_the_spherical_pendulum():
 
 @pytest.fixture(scope="module")
 def top():
-    return mbsym.load("systems/heavy-top.yaml").invariant_sets
+    return derived(SHIPPED / "heavy-top.yaml").invariant_sets
 
 
 def test_the_sleeping_top(top):
@@ -83,7 +83,7 @@ def test_regular_precessions_of_the_top(top):
 
 def test_the_double_pendulum_rests_stably_only_hanging():
     """V has its minimum at 0, 0 alone."""
-    (one,) = mbsym.load("systems/double-pendulum.yaml").invariant_sets.families[0].sets
+    (one,) = derived(SHIPPED / "double-pendulum.yaml").invariant_sets.families[0].sets
     numbers = {"m1": 1, "m2": 2, "l1": 1, "l2": 3, "g": 10}
     stable = {(a, b): sufficient(one, **numbers, cos_theta1=a, cos_theta2=b) for a in (1, -1) for b in (1, -1)}
     assert stable == {(1, 1): True, (1, -1): False, (-1, 1): False, (-1, -1): False}
@@ -92,7 +92,7 @@ def test_the_double_pendulum_rests_stably_only_hanging():
 def test_the_dumbbell_on_a_circular_orbit():
     """Along the radius: frequencies sqrt(3) and 2 times the orbit's (Beletsky); along the tangent unstable."""
     radial, tangential = sorted(
-        mbsym.load("systems/dumbbell.yaml").invariant_sets.families[0].sets, key=lambda one: one.first.unstable
+        derived(SHIPPED / "dumbbell.yaml").invariant_sets.families[0].sets, key=lambda one: one.first.unstable
     )
     assert radial.variation.outcome is Definiteness.STABLE
     squares = {value(low, omega0=1) / value(high, omega0=1) for low, high in radial.first.factors}
@@ -103,7 +103,7 @@ def test_the_dumbbell_on_a_circular_orbit():
 
 def test_a_disc_that_rolls_has_the_freedoms_that_its_constraints_leave():
     """Of five coordinates three velocities are free: at rest, upright, 5 r lean'' = 4 g lean (Appell, Routh)."""
-    (one,) = mbsym.load("systems/rolling-disc.yaml").invariant_sets.families[0].sets
+    (one,) = derived(SHIPPED / "rolling-disc.yaml").invariant_sets.families[0].sets
     assert (one.kind, one.invariant) == (Kind.STEADY, True)
     ((low, high),) = one.first.factors
     numbers = {"r": 2, "g": 10, "cos_lean": 1}

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, Exact, at_values, reference
+from conftest import SHIPPED, Exact, at_values, derived, reference
 
 import mbsym
 
@@ -21,7 +21,7 @@ def characteristic(a: mbsym.analysis.Analysis, *names: str) -> list:
 
 def test_frequencies_of_the_dumbbell() -> None:
     """lambda^2 + 3 in the plane of the orbit, lambda^2 + 4 across it, in units of the orbital rate."""
-    a = mbsym.load(SHIPPED / "dumbbell.yaml")
+    a = derived(SHIPPED / "dumbbell.yaml")
     assert ORBIT["dumbbell"] == {"pitch": "sqrt(3) n", "roll": "2 n"}
     for name, square in (("alpha", 3), ("beta", 4)):
         constant, linear, leading = characteristic(a, name)
@@ -30,14 +30,14 @@ def test_frequencies_of_the_dumbbell() -> None:
 
 
 def test_stability_of_the_dumbbell() -> None:
-    a = mbsym.load(SHIPPED / "dumbbell.yaml")
+    a = derived(SHIPPED / "dumbbell.yaml")
     assert a.stability.verdict.word == "stable"
     assert not [check for check in a.checks if check.outcome != "exact"]
 
 
 def test_the_dumbbell_has_six_equilibria() -> None:
     """Along the radius (stable), along the velocity and along the normal; the last two hide behind the angles."""
-    found = mbsym.load(SHIPPED / "dumbbell.yaml").equilibria
+    found = derived(SHIPPED / "dumbbell.yaml").equilibria
     assert found.complete
     assert len(found.equilibria) == 6
     stable = [tuple(x.text for x in one.values) for one in found.equilibria if one.verdict.word == "stable"]
@@ -47,7 +47,7 @@ def test_the_dumbbell_has_six_equilibria() -> None:
 
 def test_a_thin_satellite_is_a_dumbbell() -> None:
     """Pitch: 3 (A - B)/C in units of the orbital rate squared, which is 3 for a rod along the radius."""
-    a = mbsym.load(SHIPPED / "gravity-gradient.yaml")
+    a = derived(SHIPPED / "gravity-gradient.yaml")
     assert ORBIT["pitch_frequency"] == "n sqrt(3(Ix-Iz)/Iy)"  # x along the velocity, y the normal, z the radius
     exact = Exact(a)
     constant, linear, leading = (exact.same(x) for x in characteristic(a, "theta"))

@@ -6,13 +6,12 @@ import json
 import random
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, analysed, text_of
+from conftest import SHIPPED, analysed, derived, text_of
 from flint import arb
 
 import mbsym
@@ -30,9 +29,8 @@ from mbsym.source import read
 REFERENCES = Path(__file__).parents[1] / "references"
 
 
-@cache
 def shipped(name: str) -> Analysis:
-    return mbsym.load(SHIPPED / f"{name}.yaml")
+    return derived(SHIPPED / f"{name}.yaml")
 
 
 class AtState:

@@ -17,7 +17,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from conftest import SHIPPED, Exact, agrees, at_values, ball, parsed, precision, reference, total
+from conftest import SHIPPED, Exact, agrees, at_values, ball, derived, parsed, precision, reference, total
 from flint import fmpq
 from mpmath import mp
 from plain_vectors import add, apply, cross
@@ -98,7 +98,7 @@ CONDITIONS = {
 
 @pytest.fixture(scope="module")
 def a() -> Analysis:
-    return mbsym.load(SHIPPED / "satellite.yaml")
+    return derived(SHIPPED / "satellite.yaml")
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import SHIPPED, WITH_BODIES, compiled_latex, invoked, needs_pdflatex
+from conftest import SHIPPED, WITH_BODIES, compiled_latex, derived, invoked, needs_pdflatex
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -40,7 +40,7 @@ def test_only_long_formulas_are_told(path: Path) -> None:
 
 @pytest.mark.parametrize("name", sorted(TOLD_IN_PRODUCTS))
 def test_passages_define_what_is_used_before_it_is_used(name: str) -> None:
-    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+    analysis = derived(SHIPPED / f"{name}.yaml")
     told = analysis.told
     for number in (1, 2, 3):
         formulas = told_formulas(told, number)
@@ -93,7 +93,7 @@ def test_nothing_overflows(name: str, tmp_path: Path) -> None:
 
 def test_passages_stand_in_anyones_document() -> None:
     """They use no macro of report.tex."""
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     listed = compact(analysis, {3: analysis.equations})[3]
     text = latex_writer.paragraphs(listed.system.told, listed.passages, latex_writer.escaped)
     assert "longformula" not in text
@@ -108,7 +108,7 @@ def test_a_chain_that_nobody_follows_is_counted(monkeypatch: pytest.MonkeyPatch)
 
 def test_the_energy_integral_is_told_through_problems_2_and_3() -> None:
     """And what is said of it is so: T_2 - T_0 - U, from the closed energies, is the integral."""
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     (integral,) = analysis.integrals
     energy, ring = analysis.energy, analysis.ring
     rates = [ring.generator("velocity", name) for name in analysis.system.coordinates]
@@ -124,12 +124,12 @@ def test_the_energy_integral_is_told_through_problems_2_and_3() -> None:
     assert f"Written out there are {integral.formula.terms} terms." in text
     # Without the problems that it refers to, it is written out.
     assert said not in TARGETS["latex"].render(analysis, (7,))
-    assert said not in TARGETS["latex"].render(mbsym.load(SHIPPED / "double-pendulum.yaml"), (2, 3, 7))
+    assert said not in TARGETS["latex"].render(derived(SHIPPED / "double-pendulum.yaml"), (2, 3, 7))
 
 
 def test_what_is_told_is_counted_as_the_terminal_counts_it() -> None:
     """T as a whole, and no velocity twice."""
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     energy = analysis.energy
     text = TARGETS["latex"].render(analysis, (2,))
     assert f"Written out there are {energy.kinetic_energy.terms + energy.force_function.terms} terms." in text

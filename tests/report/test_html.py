@@ -69,7 +69,7 @@ def wanted(analysis: Analysis) -> dict[str, Formula]:
 @pytest.mark.parametrize("name", ["satellite", "double-pendulum", "spring-pendulum", "ziegler-damped"])
 def test_formulas_are_worth_what_the_exact_results_are(name: str) -> None:
     """Read by a reader that knows nothing of mbsym, at a random rational point, with balls of 200 bits."""
-    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+    analysis = derived(SHIPPED / f"{name}.yaml")
     lines = formulas(tree(page_of(analysis, (2, 3))))
     values = point(analysis, 7)
     checked = 0
@@ -110,7 +110,7 @@ def told_values(page: str, known: dict[str, arb], number: int = 3) -> dict[str, 
 
 def test_what_is_told_through_intermediates_is_worth_the_same() -> None:
     """From the first definition to M and f, read as a person would; a slip in a definition is seen below it."""
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     page = page_of(analysis, (3,))
     assert page.count('class="formula told"') > 10
     values = point(analysis, 11)
@@ -136,7 +136,7 @@ def test_what_is_told_through_intermediates_is_worth_the_same() -> None:
 
 def test_a_wrong_sign_exponent_or_name_is_seen() -> None:
     """Each planted into the page: the reader finds another value, or nothing that it can read."""
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     page = page_of(analysis, (2, 3))
     values, source = point(analysis, 3), random.Random(1)
     start = page.index("<details><summary>The same, written out", page.index('id="problem-3"'))
@@ -176,13 +176,13 @@ def test_a_wrong_sign_exponent_or_name_is_seen() -> None:
 def test_every_piece_is_markup_of_ours() -> None:
     """No tag has been escaped by mistake, and the production reader takes the page."""
     for name in ("satellite", "tethered-satellites", "heavy-top", "ziegler-damped", "gyrostat"):
-        page = page_of(mbsym.load(SHIPPED / f"{name}.yaml"))
+        page = page_of(derived(SHIPPED / f"{name}.yaml"))
         assert "&lt;m" not in page
         assert unreadable("report.html", page) == ""
 
 
 def test_the_production_reader_refuses_what_is_not_ours() -> None:
-    page = page_of(mbsym.load(SHIPPED / "simple-pendulum.yaml"), (3,))
+    page = page_of(derived(SHIPPED / "simple-pendulum.yaml"), (3,))
     for planted in (
         '<img src="https://example.org/x.png"/>', '<p onclick="x()">a</p>', '<a href="javascript:x()">a</a>',
         '<p style="color:red">a</p>', "<p>never closed", "a & b", "<p>\x07</p>",
@@ -220,7 +220,7 @@ class Outline(HTMLParser):
 def test_the_outline_is_in_order(name: str) -> None:
     """One first heading, none that skips a level, no name twice, every link leads somewhere, a language."""
     found = Outline()
-    found.feed(page_of(mbsym.load(SHIPPED / f"{name}.yaml")))
+    found.feed(page_of(derived(SHIPPED / f"{name}.yaml")))
     assert found.levels.count(1) == 1
     assert all(after <= before + 1 for before, after in zip(found.levels, found.levels[1:], strict=False))
     assert len(set(found.ids)) == len(found.ids)
@@ -304,7 +304,7 @@ def test_a_browser_shows_the_satellite(tmp_path: Path) -> None:
 
     The page's own policy forbids scripts of a test, so what the browser made of it is read from the DOM.
     """
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     page = page_of(analysis)
     file = filed(tmp_path / "report.html", page)
     dom, said = browsed(file)
@@ -334,7 +334,7 @@ def test_a_browser_shows_the_satellite(tmp_path: Path) -> None:
 @needs_chromium
 def test_nothing_but_the_page_itself_is_run(tmp_path: Path) -> None:
     """The policy that stands in the page refuses a script whose hash it does not know."""
-    page = page_of(mbsym.load(SHIPPED / "simple-pendulum.yaml"), (3,))
+    page = page_of(derived(SHIPPED / "simple-pendulum.yaml"), (3,))
     (tmp_path / "report.html").write_text(page.replace("</body>", "<script>document.title='owned'</script></body>"))
     dom, said = browsed(tmp_path / "report.html")
     assert "<title>owned" not in dom

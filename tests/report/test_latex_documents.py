@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import invoked
+from conftest import derived, invoked
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -39,7 +39,7 @@ PREAMBLE = "\\usepackage[utf8]{inputenc}\n\\usepackage[T1]{fontenc}\n\\usepackag
 
 @cache
 def files_of(name: str) -> dict[str, str]:
-    return written(mbsym.load(SHIPPED / name))
+    return written(derived(SHIPPED / name))
 
 
 def written(analysis: Analysis) -> dict[str, str]:

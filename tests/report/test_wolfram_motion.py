@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, derived
 from test_reports import uncommented
 from truth_at_states import Point, truth
 
@@ -42,7 +42,7 @@ AT_START = """
 
 @pytest.mark.parametrize("name", ["double-pendulum"])
 def test_equations_and_initial_conditions_give_the_accelerations(name: str, mathics: Any) -> None:
-    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+    analysis = derived(SHIPPED / f"{name}.yaml")
     report = uncommented(TARGETS["wolfram"].render(analysis, (3,)))
     assert "mbsymSolution[tEnd_] := NDSolve[Join[equations, initialConditions]" in report
     mathics.reset()
@@ -55,7 +55,7 @@ def test_equations_and_initial_conditions_give_the_accelerations(name: str, math
 @pytest.mark.parametrize("name", ["double-pendulum", "satellite-with-damper-driven"])
 def test_the_program_gives_the_same(name: str, mathics: Any) -> None:
     """Where equations are too long to be printed whole: mbsymRate, which NDSolve calls."""
-    whole = mbsym.load(SHIPPED / f"{name}.yaml")
+    whole = derived(SHIPPED / f"{name}.yaml")
     report = uncommented(TARGETS["wolfram"].render(Analysis(whole.system, terms=3), (3,)))
     assert "equations =" not in report
     n, wanted = len(whole.system.coordinates), expected(whole)

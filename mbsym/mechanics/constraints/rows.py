@@ -292,17 +292,20 @@ def _rolling(scene: Scene, rolling: Rolling, rates: Rates) -> list[_Form]:
     view = View(scene, common_frame(scene, (rolling.body, rolling.on, rolling.axes)), rates)
     centre = view.point(view.fixed(scene.zero(rolling.body)))
     arm = view.vector(view.moving(rolling.contact, rolling.axes))
-    body = _material(centre, view.spin(rolling.body), arm)
+    body = _material(centre, view.spin(rolling.body), arm, rates)
     base = view.point(view.fixed(scene.zero(rolling.on)))
-    carrier = _material(base, view.spin(rolling.on), centre + arm - base)
+    carrier = _material(base, view.spin(rolling.on), centre + arm - base, rates)
     speeds, rates_of_speeds = body[0] - carrier[0], body[1] - carrier[1]
     return [_Form(None, *x) for x in zip(speeds, rates_of_speeds, strict=True)]
 
 
-def _material(origin: Moving, spin: Moving, arm: Moving) -> tuple[Vector, Vector]:
+def _material(origin: Moving, spin: Moving, arm: Moving, rates: Rates) -> tuple[Vector, Vector]:
     """V_O + omega x c of the material point at a contact c that moves in its body, and the rate of that."""
+    speed = origin.first + spin.value.cross(arm.value)
+    if not rates.bent:
+        return speed, origin.second
     swung = spin.first.cross(arm.value) + spin.value.cross(arm.first)
-    return origin.first + spin.value.cross(arm.value), origin.second + swung
+    return speed, origin.second + swung
 
 
 def _velocity(scene: Scene, g: Expression, along: str | None) -> _Form:

@@ -47,10 +47,14 @@ class Moving:
 
 @dataclass(frozen=True, slots=True)
 class Rates:
-    """How expressions change: ``first`` and ``second`` rate of an expression, as scalars."""
+    """How expressions change: ``first`` and ``second`` rate of an expression, as scalars.
+
+    Where ``bent`` is false nobody asks for second rates: they are left at zero, and mean nothing.
+    """
 
     first: Callable[[Expression], Scalar]
     second: Callable[[Expression], Scalar]
+    bent: bool = True
 
 
 def along_motion(scene: Scene) -> Rates:
@@ -62,13 +66,13 @@ def along_motion(scene: Scene) -> Rates:
 
 
 def along_coordinate(scene: Scene, name: str) -> Rates:
-    """The derivative by one coordinate, in place of the first rate; second rates are zero, and mean nothing."""
+    """The derivative by one coordinate, in place of the first rate."""
     zero = scene.algebra.zero
 
     def slope(x: Expression) -> Scalar:
         return scene.lower(differentiate(x, name)) if name in names(x) else zero
 
-    return Rates(slope, lambda _: zero)
+    return Rates(slope, lambda _: zero, bent=False)
 
 
 class View:
@@ -143,10 +147,12 @@ class View:
     def _turned_back(self, turn: Turn, rate: Scalar, second: Scalar, u: Moving) -> Moving:
         spin = axis_vector(self.algebra, turn.axis, rate, turn.frame)
         swung = spin.cross(u.value)
-        first = u.first + swung
+        value, first = turn.back(u.value), turn.back(u.first + swung)
+        if not self.rates.bent:
+            return Moving(value, first, self.scene.zero(turn.source))
         twice = spin.cross(u.first + u.first + swung)
         lag = axis_vector(self.algebra, turn.axis, second, turn.frame).cross(u.value)
-        return Moving(turn.back(u.value), turn.back(first), turn.back(u.second + twice + lag))
+        return Moving(value, first, turn.back(u.second + twice + lag))
 
 
 def common_frame(scene: Scene, bodies: Sequence[str]) -> str:

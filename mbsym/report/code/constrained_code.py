@@ -17,7 +17,6 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
-from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.stages import Unavailable
 from mbsym.mechanics.constraints.dependence import counted_anew
 from mbsym.mechanics.constraints.dynamics import Chosen, ConstrainedDynamics, Kept, constrained_dynamics
@@ -96,7 +95,7 @@ def tied_of(analysis: Analysis) -> Tied | str:
 
 
 def _tied(analysis: Analysis) -> Tied:
-    constraints, code = analysis.constraints, programs_of(analysis)
+    constraints, code = analysis.constraints, analysis.tied_programs
     order = sorted(range(len(code.names)), key=lambda i: code.position[i] is None)
     rows, sets = counted_anew(
         order, constraints.independent, constraints.dependent_sets, constraints.dependent_positions
