@@ -59,15 +59,15 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
         sys.exit(Exit.BAD_INPUT)
     if output_format != "text":
         sys.exit(_for_programs(paths, output_format))
-    several, codes = len(paths) > 1, dict.fromkeys(paths, Exit.OK)
+    codes = dict.fromkeys(paths, Exit.OK)
     for path in paths:
         try:
-            codes[path] = _check(path, brief=several)
+            codes[path] = _check(path)
         except Exception as error:  # a defect of ours must not cost the rest of the batch
             defect(error, path)
             codes[path] = Exit.FAILED
     wrong = [printable(path) for path, code in codes.items() if code != Exit.OK]
-    if several and wrong:
+    if wrong and len(paths) > 1:
         text = "[[count]] descriptions: [[good]] ok, not ok: [[wrong]]"
         told = Message(text, count=len(paths), good=len(paths) - len(wrong), wrong=", ".join(wrong))
         print(wrapped(told, asked_width()))
@@ -98,14 +98,11 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
     return worst
 
 
-def _check(path: Path, brief: bool) -> Exit:
-    """What is said of a description; ``brief``: one of many, whose size nobody asks for."""
+def _check(path: Path) -> Exit:
     system = read_description(path)
     if system is None:
         return Exit.BAD_INPUT
     sound = Message("ok: [[name]]; [[size]]", name=system.name, size=_size(system))
-    if brief:
-        sound = Message("ok: [[name]]", name=system.name)
     print(wrapped(f"{printable(path)}: {Language(system.language).say(sound)}", asked_width()))
     return Exit.OK
 
