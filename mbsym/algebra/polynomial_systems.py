@@ -26,14 +26,12 @@ from typing import Any
 
 from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, message_of
 from mbsym.algebra.matrices import echelon
 from mbsym.algebra.terms import residue, univariate
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import Call, Expression, add, number, subtract
 
 Polynomial = Any  # a flint.fmpz_mpoly
 Univariate = Any  # a flint.fmpq_poly
@@ -708,20 +706,3 @@ def minimal_polynomial(value: Univariate, modulus: Univariate) -> Univariate:
         return fmpq_poly([-value[0], 1])
     columns = [(value * fmpq_poly([0] * j + [1])) % modulus for j in range(n)]
     return fmpq_mat(n, n, [columns[j][i] for i in range(n) for j in range(n)]).minpoly()
-
-
-def by_square_root(minimal: Univariate, value: Any) -> Expression | None:
-    """The root of a polynomial of degree 1 or 2 that is in the ball ``value``; None of others, or where both may be.
-
-    -c,    -b/2 + sqrt(b^2/4 - c),    -b/2 - sqrt(b^2/4 - c)    of x + c and x^2 + b x + c
-    """
-    if minimal.degree() > 2:
-        return None
-    monic = [rationals.fraction(x / minimal[minimal.degree()]) for x in minimal.coeffs()]
-    if len(monic) == 2:
-        return number(-monic[0])
-    middle = -monic[1] / 2
-    if value.overlaps(rationals.ball(middle)):
-        return None
-    root = Call("sqrt", number(middle**2 - monic[0]))
-    return (add if value > rationals.ball(middle) else subtract)(number(middle), root)

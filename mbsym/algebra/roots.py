@@ -22,6 +22,7 @@ from typing import Any
 from flint import ctx, fmpq, fmpq_poly
 
 from mbsym.algebra import rationals
+from mbsym.expressions.tree import Call, Expression, add, number, subtract
 
 Rational = Any  # int, Fraction or flint.fmpq
 Univariate = Any  # a flint.fmpq_poly
@@ -188,3 +189,20 @@ def _real_roots_below_zero(squarefree: Univariate) -> int:
     """Sturm: the number of roots in (-oo, 0) of a square-free polynomial that does not vanish at 0."""
     chain = _sturm_chain(squarefree, squarefree.derivative())
     return _variations(chain, -1) - _variations(chain, 0)
+
+
+def by_square_root(minimal: Univariate, value: Any) -> Expression | None:
+    """The root of a polynomial of degree 1 or 2 that is in the ball ``value``; None of others, or where both may be.
+
+    -c,    -b/2 + sqrt(b^2/4 - c),    -b/2 - sqrt(b^2/4 - c)    of x + c and x^2 + b x + c
+    """
+    if minimal.degree() > 2:
+        return None
+    monic = [rationals.fraction(x / minimal[minimal.degree()]) for x in minimal.coeffs()]
+    if len(monic) == 2:
+        return number(-monic[0])
+    middle = -monic[1] / 2
+    if value.overlaps(rationals.ball(middle)):
+        return None
+    root = Call("sqrt", number(middle**2 - monic[0]))
+    return (add if value > rationals.ball(middle) else subtract)(number(middle), root)

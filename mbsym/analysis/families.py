@@ -222,7 +222,7 @@ class _Numbers:
         """Raises NotRational where neither is proved."""
         zero = self.ring.is_zero(x)
         if zero is None:
-            raise NotRational("a number that may be 0")
+            raise NotRational("a derivative has no exact value")
         return zero
 
     def positive(self, x: Polynomial) -> bool:

@@ -26,6 +26,7 @@ from mbsym.expressions.tree import (
     divide,
     multiply,
     names,
+    negative,
     number,
     sign_by_structure,
     subtract,
@@ -507,21 +508,22 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
 
 def _check_degrees(system: System, reading: Reading) -> None:
     """Angles of rotation that are multiples of 15, more than two turns in radians: degrees were meant, most likely."""
-    turned = {name for body in system.bodies for _, angle in body.rotation.turns() for name in names(angle)}
+    angles = (angle for body in system.bodies for _, angle in body.rotation.turns())
+    turned = {angle.name for angle in angles if isinstance(angle, Name)}  # of x/R, x is a length
     places = [(x.coordinate, x.position, x.span) for x in system.initial]
     for name, written, span in [*places, *((x.coordinate, x.value, x.span) for x in system.motion)]:
         value = None if written is None else rational(written)
         if name not in turned or value is None or span is None or not 15 <= abs(value) <= 360 or value % 15:
             continue
         share = Fraction(abs(value), 180)
-        meant = divide(multiply(number(share.numerator), Name("pi")), number(share.denominator))
+        half_turns = multiply(number(share.numerator), Name("pi"))
+        signed = negative(half_turns) if value < 0 else half_turns
         message = Message(
             "'[[name]]' is an angle in radians: [[value]] are [[turns]] turns",
             name=name,
             value=str(value),
             turns=f"{float(value) / math.tau:.3g}",
         )
-        hint = Message(
-            "for [[value]] degrees write [[written]]", value=str(value), written=f"-{meant}" if value < 0 else meant
-        )
+        meant = text(divide(signed, number(share.denominator)))
+        hint = Message("for [[value]] degrees write [[written]]", value=str(value), written=meant)
         reading.complaints.warning("angle-in-degrees", message, span, hint)

@@ -17,7 +17,7 @@ from typing import Any
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from mbsym.algebra import rationals
-from mbsym.algebra.polynomial_systems import by_square_root
+from mbsym.algebra.roots import by_square_root
 from mbsym.expressions.tree import Expression
 
 Rational = Any  # a flint.fmpq

@@ -16,12 +16,12 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.polynomial_systems import (
     AlgebraicPoint,
-    by_square_root,
     context,
     inverse_modulo,
     minimal_polynomial,
 )
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.roots import by_square_root
 from mbsym.algebra.terms import residue
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Call, Expression, multiply, number, substitute
