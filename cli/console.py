@@ -277,9 +277,14 @@ def read_description(
     for complaint in complaints.sorted():
         diagnose(render(complaint, text, str(path), say))
     if count := len(complaints.errors):
-        many = "[[count]] errors; nothing was written." if count > 1 else "[[count]] error; nothing was written."
-        complain(path, say(Message(many, count=count)))
+        complain(path, say(counted(count)))
     return None if complaints.errors else system
+
+
+def counted(errors: int) -> Message:
+    """The last line where there are errors."""
+    many = "[[count]] errors; nothing was written." if errors > 1 else "[[count]] error; nothing was written."
+    return Message(many, count=errors)
 
 
 def _in_free_coordinates(path: Path, system: System, command: str, instead: str, complaints: Complaints) -> System:

@@ -18,7 +18,7 @@ from mbsym.expressions.place import Complaints
 from mbsym.source import read, render, to_text, to_yaml
 from mbsym.studies.study import Exit
 from mbsym_cli.assignments import in_scale
-from mbsym_cli.console import OutPath, complain, diagnose, printable, read_description, speaking
+from mbsym_cli.console import OutPath, complain, counted, diagnose, printable, read_description, speaking
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
 
@@ -205,8 +205,7 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
         diagnose(render(complaint, text, str(file)))
     errors = len(complaints.errors)
     if made is None or errors:
-        many = "[[count]] errors; nothing was written." if errors > 1 else "[[count]] error; nothing was written."
-        complain(file, Message(many, count=errors))
+        complain(file, counted(errors))
         return None
     for omitted in made.left_out:
         complain(file, Message("left out: [[what]]", what=printable(omitted)))

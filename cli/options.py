@@ -15,7 +15,7 @@ from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS, ranges
 from mbsym.source import render_option
-from mbsym_cli.console import diagnose, printable
+from mbsym_cli.console import counted, diagnose, printable
 
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000
@@ -74,10 +74,7 @@ class Options:
             return False
         whose = "options" if file is None else printable(file)
         diagnose("\n".join(self.complaints))
-        many = "[[count]] errors; nothing was written."
-        count = len(self.complaints)
-        message = Message(many if count > 1 else "[[count]] error; nothing was written.", count=count)
-        print(f"{whose}: {self.say(message)}", file=sys.stderr)
+        print(f"{whose}: {self.say(counted(len(self.complaints)))}", file=sys.stderr)
         return True
 
     def descriptions(self, files: Iterable[Path]) -> list[Path]:
