@@ -196,7 +196,10 @@ def periodic_orbit(
         ahead = rates(np.concatenate(([here.period], here.end))) if free_period else None
         place = search.towards(here, search.step(here, forward, ahead))
         if place is None:
-            break
+            if best.closure >= NEARLY:
+                break
+            since = PATIENCE  # it is as near as rounding lets it come
+            continue
         here = place
         if here.period < SHORTEST * guess.period:
             raise NotFound(_vanishing(here.period, turns))
