@@ -18,7 +18,7 @@ from mbsym.expressions.message import Message
 from mbsym.report.language import Language
 from mbsym.source import is_description, load
 from mbsym.studies.study import Exit
-from mbsym_cli.console import asked_width, defect, printable, read_description, wrapped
+from mbsym_cli.console import asked_width, defect, printable, read_description, speaking, wrapped
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
     if wrong and len(paths) > 1:
         text = "[[count]] descriptions: [[good]] ok, not ok: [[wrong]]"
         told = Message(text, count=len(paths), good=len(paths) - len(wrong), wrong=", ".join(wrong))
-        print(wrapped(told, asked_width()))
+        print(wrapped(speaking(*paths)(told), asked_width()))
     sys.exit(max(codes.values()))
 
 

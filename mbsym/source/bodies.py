@@ -218,7 +218,9 @@ def _bare_name(node: Node) -> str | None:
 def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:
     """The second pass: everything about one body."""
     fields = draft.fields
-    mass = fields.required_expression("mass", Allowed("a mass"), "its mass, or 0 for a massless frame")
+    mass = fields.required_expression(
+        "mass", Allowed("a mass"), "write mass: m with the mass for m, or mass: 0 for a massless frame"
+    )
     return Body(
         name=draft.name,
         attached_to=_attached_to(draft, drafts, reading),

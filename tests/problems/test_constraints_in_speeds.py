@@ -13,7 +13,7 @@ from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.checks import EXACT, NUMERICAL
 
 #: Without multipliers their equations outgrow the budget, and nobody has them to check.
-LONG = {"parallel", "rolling on a body"}
+LONG = {"parallel"}
 
 ARM = "connection point: [1, 0, 0],\n     inertia about: joint, inertia: [A, A, A]}"
 WHEEL = "angles: [phi]}, inertia about: joint,\n     inertia: [A, A, A]}"

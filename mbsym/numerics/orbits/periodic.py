@@ -52,6 +52,9 @@ RESTING = 1e-6
 #: sizes, is measured as if it moved as much; no motion is smaller than this part of the state's size.
 MEASURED, BESIDE, LEAST = 64, 1e-4, 1e-9
 
+#: The search weighs by the state's sizes, up to so many of the motion.
+AS_FAR = 100.0
+
 #: Singular values below this part of the largest are those of directions along which the orbit may be moved.
 RANK = 1e-9
 
@@ -184,8 +187,8 @@ def periodic_orbit(
         raise NotFound(Message("the motion of the guess breaks down before its period is over"))
     best, since = here, 0
     for count in range(MOST_STEPS):
-        watch(count, here.size)
-        if here.size < CLOSED or (best.size < NEARLY and since >= PATIENCE):
+        watch(count, here.closure)
+        if here.closure < CLOSED or (best.closure < NEARLY and since >= PATIENCE):
             turns = np.where(shifted, best.end - best.state, turns)
             orbit = _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy, motion)
             return replace(orbit, shifted=guess.shifted)
@@ -193,12 +196,15 @@ def periodic_orbit(
         ahead = rates(np.concatenate(([here.period], here.end))) if free_period else None
         place = search.towards(here, search.step(here, forward, ahead))
         if place is None:
-            break
+            if best.closure >= NEARLY:
+                break
+            since = PATIENCE  # it is as near as rounding lets it come
+            continue
         here = place
         if here.period < SHORTEST * guess.period:
             raise NotFound(_vanishing(here.period, turns))
         best, since = (here, 0) if here.size < 0.5 * best.size else (best, since + 1)
-    left = min(best.size, here.size)
+    left = min(best.closure, here.closure)
     raise NotFound(
         Message(
             "no convergence: what is left over after [[steps]] is [[left]] of the motion's size",
@@ -261,7 +267,8 @@ def _vanishing(period: float, turns: Any) -> Message:
 
 @dataclass(frozen=True)
 class _Place:
-    """A state and period of the search: where its motion ends, Phi, what is left over and its size."""
+    """A state and period of the search: where its motion ends, Phi, what is left over, its size as it is weighed and as
+    part of the motion's size."""
 
     state: Any
     period: float
@@ -269,6 +276,7 @@ class _Place:
     phi: Any
     rest: Any
     size: float
+    closure: float
 
 
 class _Search:
@@ -288,12 +296,16 @@ class _Search:
         except Breakdown:
             return None
         rest = np.where(self.shifted, 0.0, end - state - self.turns)
-        size = float(np.max(np.abs(rest) / self.motion))
+        closure, size = (float(np.max(np.abs(rest) / by)) for by in (self.motion, self._weights(state)))
         if self.wanted is not None:
             off = self.wanted - self.energy(state)
             rest = np.append(rest, -off)
-            size = max(size, abs(off) / (self.energy.size(state) + abs(self.wanted)))
-        return _Place(state, period, end, phi, rest, size)
+            beside = abs(off) / (self.energy.size(state) + abs(self.wanted))
+            closure, size = max(closure, beside), max(size, beside)
+        return _Place(state, period, end, phi, rest, size, closure)
+
+    def _weights(self, state: Any) -> Any:
+        return np.minimum(self.energy.scale(state), AS_FAR * self.motion)
 
     def step(self, here: _Place, forward: Any, ahead: Any) -> Callable[[float], Any]:
         """(dx0, dT), or dx0 alone, by the damping; ``forward`` is f at the start, orthogonal to dx0, ``ahead`` f at the
@@ -302,7 +314,7 @@ class _Search:
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """
         size, basis = self.flow.size, self.flow.tangent(here.state)
-        scale = self.motion
+        scale = self._weights(here.state)
         allowed = np.diag(scale) if basis is None else scale[:, None] * np.linalg.qr(basis / scale[:, None])[0]
         matrix, units = np.where(self.shifted[:, None], 0.0, here.phi - np.eye(size)), scale
         if self.wanted is not None:
@@ -415,7 +427,7 @@ def _orbit(
         state,
         period,
         turns,
-        place.size,
+        place.closure,
         verified,
         verifier,
         steps,

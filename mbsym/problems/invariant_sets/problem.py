@@ -74,12 +74,14 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[result.Family, tuple[Polyn
     looked = [_set(place, whole) for place in kept_places[:MOST_SETS]]
     sets = [stationary_set for stationary_set in looked if stationary_set is not None]
     # A piece of a larger set may be cut off it by what was divided by; alone it need not be invariant.  The whole is,
-    # where K is an integral; where that is not seen a set that is not invariant stays, and is told as a defect.
+    # where K is an integral; where it is seen to be none a set that is not invariant stays, and is told as a defect.
     failed = [stationary_set for stationary_set in sets if stationary_set.invariant is False]
-    parts = failed if arena.floating or (failed and _conserved(arena)) else []
-    sets = [stationary_set for stationary_set in sets if stationary_set not in parts]
+    conserved = True if arena.floating else _conserved(arena) if failed else None
+    parts = failed if conserved else []
+    sets = [stationary_set for stationary_set in sets if conserved is False or stationary_set not in failed]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
     unfinished = splitting.unfinished + max(0, len(kept_places) - MOST_SETS) + looked.count(None)
+    unfinished += len(failed) if conserved is None else 0
     sets.sort(key=lambda stationary_set: (stationary_set.dimension, stationary_set.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
     return result.Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
@@ -107,10 +109,11 @@ def _is_empty(place: Place, generic: list[Polynomial]) -> bool:
     return provided is not None
 
 
-def _conserved(arena: Arena) -> bool:
-    """Whether d/dt of every integral vanishes where the relations between the variables hold."""
+def _conserved(arena: Arena) -> bool | None:
+    """Whether d/dt of every integral vanishes where the relations between the variables hold; None: not decided."""
     place = _on_relations(arena, Branch(()), [])
-    return place is not None and all(place.vanishes(arena.derivative(p)) is True for p in arena.integrals)
+    found = {None} if place is None else {place.vanishes(arena.derivative(p)) for p in arena.integrals}
+    return False if False in found else None if None in found else True
 
 
 def _angles(arena: Arena, whole: Polynomial) -> tuple[list[tuple[int, int]], Polynomial]:
