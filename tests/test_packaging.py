@@ -6,6 +6,7 @@ import ast
 import importlib
 import shutil
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -49,3 +50,12 @@ def test_benches_import_what_there_is(path: Path) -> None:
             missing = [name.name for name in node.names if not hasattr(module, name.name)]
             for name in missing:  # a module of a package
                 importlib.import_module(f"{node.module}.{name}")
+
+
+@pytest.mark.parametrize("name", ["loops_bench", "maps_bench", "partition_bench"])
+def test_benches_find_the_tests_that_they_use(name: str) -> None:
+    """Alone, as they are run: without what pytest puts on the path."""
+    path = Path(__file__).parent / "bench" / f"{name}.py"
+    code = f"import runpy; runpy.run_path({str(path)!r}, run_name='bench')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -22,7 +22,7 @@ from random import Random
 import numpy as np
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 from tests.maps.test_map import SATELLITE, mapped, paper_matrices, roots_to_the_right  # noqa: E402
 

@@ -23,7 +23,7 @@ from scipy.integrate import DOP853
 from scipy.linalg import qr
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TESTS / "constrained"))
+sys.path[:0] = [str(TESTS.parent), str(TESTS), str(TESTS / "constrained")]
 
 from test_constrained_trade import CHANGE_POINT  # noqa: E402
 
