@@ -180,7 +180,7 @@ def periodic_orbit(
             raise NotFound(Message("the motion depends on [[name]], which has to come back", name=name))
     energy = _Energy(dynamics, sizes)
     shifted = np.array([name in guess.shifted for name in names])
-    motion = _size_of_motion(dynamics, guess, energy.scale(guess.state))
+    motion = _size_of_motion(dynamics, flow.led(np.array(guess.state, float)), guess.period, energy)
     search = _Search(flow, turns, shifted, energy, energy(guess.state) if guess.keep_energy else None, motion)
     here = search.at(np.array(guess.state, float), float(guess.period))
     if here is None:
@@ -214,15 +214,16 @@ def periodic_orbit(
     )
 
 
-def _size_of_motion(dynamics: Dynamics, guess: Guess, scale: Any) -> Any:
-    """Half the range of each component over a period of the guess, wherever its zero is.
+def _size_of_motion(dynamics: Dynamics, state: Any, period: float, energy: _Energy) -> Any:
+    """Half the range of each component over a period from a state that keeps the constraints, wherever its zero is.
 
-    Shape (2n,).  A motion that breaks down is measured by ``scale`` alone.
+    Shape (2n,).  A motion that breaks down is measured by the state's sizes alone.
     """
+    scale = energy.scale(state)
     try:
         with np.errstate(all="ignore"):
-            run = METHODS["dop853"].start(dynamics, Setting(1e-8), FLOAT64, initial=np.asarray(guess.state, float))
-            states = np.asarray(run.fill(np.linspace(0.0, guess.period, MEASURED)), float)
+            run = METHODS["dop853"].start(dynamics, Setting(1e-8), FLOAT64, initial=state)
+            states = np.asarray(run.fill(np.linspace(0.0, period, MEASURED)), float)
     except (Breakdown, Unusable):
         return scale
     ranges = (np.ptp(states, axis=1) / 2 / scale).reshape(2, -1)  # coordinates, velocities
@@ -309,7 +310,7 @@ class _Search:
 
     def step(self, here: _Place, forward: Any, ahead: Any) -> Callable[[float], Any]:
         """(dx0, dT), or dx0 alone, by the damping; ``forward`` is f at the start, orthogonal to dx0, ``ahead`` f at the
-        end.  All in parts of the motion's sizes, of the period and of the energy, so that units do not count.
+        end.  All in parts of the sizes that weigh here, of the period and of the energy, so that units do not count.
 
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """

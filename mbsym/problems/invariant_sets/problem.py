@@ -76,12 +76,12 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[result.Family, tuple[Polyn
     # A piece of a larger set may be cut off it by what was divided by; alone it need not be invariant.  The whole is,
     # where K is an integral; where it is seen to be none a set that is not invariant stays, and is told as a defect.
     failed = [stationary_set for stationary_set in sets if stationary_set.invariant is False]
-    conserved = True if arena.floating else _conserved(arena) if failed else None
+    conserved = bool(arena.floating or not failed) or _conserved(arena)
     parts = failed if conserved else []
     sets = [stationary_set for stationary_set in sets if conserved is False or stationary_set not in failed]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
     unfinished = splitting.unfinished + max(0, len(kept_places) - MOST_SETS) + looked.count(None)
-    unfinished += len(failed) if conserved is None else 0
+    unfinished += len(failed) if conserved is None else 0  # whether it is a piece is open: nothing is said of it, too
     sets.sort(key=lambda stationary_set: (stationary_set.dimension, stationary_set.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
     return result.Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
