@@ -53,6 +53,11 @@ def result_lines(run: Simulation, file: str) -> Iterator[tuple[str, str]]:
     yield from (("warning", text) for text in doubts)
     if unknown:
         yield from errors
+    if run.begins_in_equilibrium:
+        text = (
+            "none: the initial state is an equilibrium; begin beside it ('initial', --set) to see how the system moves"
+        )
+        yield "motion", Message(text)
     if run.plan is not None:
         yield from bound_lines(run.plan, unit)
     yield "time", _time_line(run, unit)
