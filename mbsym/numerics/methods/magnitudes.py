@@ -54,7 +54,7 @@ SHARE = 1 / 32
 #: Nor for so little that its tolerance is below so many roundings of that size; velocities change by more than theirs.
 ROUNDINGS = 16.0
 
-#: Roundings of positions that are as large as their sizes are, in what a step adds to velocities, such a part of theirs.
+#: Roundings of positions as large as their sizes are, in what a step adds to velocities, such a part of theirs.
 OF_POSITIONS = 1 / 4
 
 #: Where nothing has a size the rates are differed over such a part of what is moved in a time of 1; their changes are
