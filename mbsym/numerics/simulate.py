@@ -127,6 +127,19 @@ class Trajectory(Integrated):
         return self.change / self.energy_scale
 
 
+#: What helps whoever begins in an equilibrium.
+BEGIN_BESIDE = Message("begin beside it ('initial', --set) to see the system move")
+
+
+class Rests(Failure):
+    """What was asked for is about a motion, and the initial state is an equilibrium."""
+
+    code = "rests"
+
+    def __init__(self) -> None:
+        super().__init__("the initial state is an equilibrium, which every method keeps", remedy=BEGIN_BESIDE)
+
+
 def begins_in_equilibrium(dynamics: Dynamics) -> bool:
     """Whether q' = 0 and q'' = 0 at the initial state, at every time: an exact motion never leaves it.
 
