@@ -8,14 +8,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from mbsym.algebra.failures import Failure
 from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
+from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.methods.interface import (
     BEYOND,
     Breakdown,
@@ -32,10 +35,17 @@ from mbsym.numerics.methods.interface import (
 )
 from mbsym.numerics.methods.magnitudes import OUTGROWN, about
 from mbsym.numerics.planning.prices import Meter
+from mbsym.numerics.scenario import PRECISION
 from mbsym.numerics.states import StateDynamics
 
 if TYPE_CHECKING:
     from mbsym.numerics.streamed import Table
+
+#: Rates below this part of those that the scene knows are roundings of an initial state of ``PRECISION`` bits.
+NO_RATE = 2.0**-160
+
+#: Larger rates are none, whatever the units: sizes of the scene are not looked for.
+LARGEST_RESIDUE = 1e-30
 
 #: Rows are filled in chunks that cost about so much (``planning.prices``), so that progress is seen and Ctrl-C
 #: keeps what there is; and not more of them at once.
@@ -115,6 +125,41 @@ class Trajectory(Integrated):
     def drift(self) -> Any:
         """(h - h(0)) / ``energy_scale``."""
         return self.change / self.energy_scale
+
+
+#: What helps whoever begins in an equilibrium.
+BEGIN_BESIDE = Message("begin beside it ('initial', --set) to see the system move")
+
+
+class Rests(Failure):
+    """What was asked for is about a motion, and the initial state is an equilibrium."""
+
+    code = "rests"
+
+    def __init__(self) -> None:
+        super().__init__("the initial state is an equilibrium, which every method keeps", remedy=BEGIN_BESIDE)
+
+
+def begins_in_equilibrium(dynamics: Dynamics) -> bool:
+    """Whether q' = 0 and q'' = 0 at the initial state, at every time: an exact motion never leaves it.
+
+    Seen in ``PRECISION`` bits, of equations without the time and without switches.
+    """
+    state = dynamics.scenario.state
+    if any(state[dynamics.dimension - len(dynamics.system.velocities) :]) or dynamics.switches.outputs:
+        return False
+    try:
+        code = dynamics.right_hand_side
+        if any(code.program.instructions[n].payload == "t" for n in code.program.live(code.outputs)):
+            return False
+        rates = [float(abs(x).upper()) for x in enclosures(code, (Fraction(0), *state), PRECISION + 64)]
+        if max(rates) > LARGEST_RESIDUE:
+            return False
+        usual = about(dynamics, 0.0, [float(x) for x in state])
+    except Failure:
+        return False
+    sizes = usual.sizes[:, 0] / float(usual.times[0])
+    return all(rate <= NO_RATE * size for rate, size in zip(rates, sizes, strict=True))
 
 
 def simulate(

@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from math import isfinite
 
-from mbsym.expressions.message import Message, plainly
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.methods.interface import Setting
@@ -184,7 +184,7 @@ def _missed(plan: Plan, simulation: Simulation, times: float) -> str:
             more = Message("which is" if error > target else "and twice that is")
             text = "[[name]] was [[error]] wrong with [[how]] by the estimate of that run, [[more]] more than [[most]]"
             wrong, how = f"{error:.1e}", _shown(plan.setting)
-            return Message(text, name=quantity.name, error=wrong, how=how, more=more, most=plainly(target))
+            return Message(text, name=quantity.name, error=wrong, how=how, more=more, most=f"{target:.2g}")
     return ""
 
 

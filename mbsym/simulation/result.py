@@ -115,6 +115,13 @@ class Simulation:
         """The Poincare section: ``points`` (axes, m), ``times``, ``states``."""
         return None if self.happened is None else self.happened.section
 
+    @cached_property
+    def begins_in_equilibrium(self) -> bool:
+        """Whether the exact motion rests at the initial state (``mbsym.numerics.simulate.begins_in_equilibrium``)."""
+        from mbsym.numerics.simulate import begins_in_equilibrium  # few runs begin so: not where the result is read
+
+        return self.request.earlier is None and begins_in_equilibrium(self.dynamics)
+
     @property
     def system(self) -> System:
         """What was simulated."""

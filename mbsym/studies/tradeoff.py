@@ -11,7 +11,7 @@ from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.request import Anew, Flag, Number, Settings, Value, Words
 from mbsym.studies.request import duration as length
-from mbsym.studies.study import BEFORE, Answer, Asked, Exit, Folder, Line, Refusal, Study, Watch, failed, line
+from mbsym.studies.study import BEFORE, Answer, Asked, Exit, Folder, Line, Refusal, Study, Watch, failed, line, refused
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
@@ -197,9 +197,12 @@ def _models(study: trade_study.Study) -> Block:
 
 def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.methods.interface import Breakdown
+    from mbsym.numerics.simulate import Rests
 
     if isinstance(error, Breakdown):
         return Refusal(Language(context.system.language).say(_without_reference(error, request)), Exit.BROKEN_DOWN)
+    if isinstance(error, Rests):
+        return refused("error[rests]: there is nothing to compare", error)
     failure = failed(error, "the equations have no program")
     return not_closed(error, context.system) or (failure and Refusal(failure.text, Exit.BROKEN_DOWN))
 

@@ -22,6 +22,7 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.methods.tableaux import DOP853, RODAS5P
 from mbsym.numerics.trade.comparison import Comparison, Difference
 from mbsym.report.runs.simulation_words import error_json, error_lines, warnings
+from mbsym.report.runs.summary import result_lines
 from mbsym.simulation import Simulation
 
 needs_extended = pytest.mark.skipif(not available("extended"), reason="this machine has no extended arithmetic")
@@ -325,3 +326,38 @@ def test_a_method_that_is_wrong_itself_is_not_judged_by_itself(tableau: Any, mon
     assert run.error.against.method != tableau.name
     assert final / 2 <= run.error.final <= 2 * final
     assert worst / 2 <= run.error.largest <= 2 * worst
+
+
+UPRIGHT = """
+mbsym: 1
+name: Pendulum
+bodies:
+  - {name: b, attached to: 0, rotation: {axes: [3], angles: [a]}, mass centre: [0, -1, 0], mass: 1}
+loads: [{uniform gravity: {vector: [0, -981/100, 0]}}]
+initial: {a: ANGLE}
+"""
+
+
+@pytest.mark.parametrize(
+    ("angle", "begins"), [("pi", True), ("0", True), ("-3*pi", True), ("3.14159265358979", False), ("1/10^13", False)]
+)
+def test_a_motion_that_begins_in_an_equilibrium(angle: str, begins: bool) -> None:
+    """a'' = -9.81 sin(a): told where sin(a) = 0, and not where a double is all but there."""
+    run = mbsym.simulate(mbsym.loads(UPRIGHT.replace("ANGLE", angle)), 10)
+    assert run.begins_in_equilibrium is begins
+    assert any(title == "motion" for title, _ in result_lines(run, "x.yaml")) is begins
+    assert run.trajectory.work.steps < 5000  # the rounding of pi does not rule them
+
+
+@pytest.mark.parametrize("start", ["{a: {position: pi, velocity: 1}}", "{a: pi}"])
+def test_what_is_pushed_or_driven_is_in_no_equilibrium(start: str) -> None:
+    """By its velocity, or by a force that is zero at first: a'' = -9.81 sin(a) + t."""
+    text = UPRIGHT.replace("{a: ANGLE}", start)
+    text = text if "velocity" in start else text.replace("loads: [", "loads: [{generalized force: {a: t}}, ")
+    assert not mbsym.simulate(mbsym.loads(text), 1).begins_in_equilibrium
+
+
+def test_small_motions_beside_zero_keep_their_digits() -> None:
+    """a = 1e-13 cos(sqrt(g) t) below: what is no rounding of a position is followed to its own size."""
+    run = mbsym.simulate(mbsym.loads(UPRIGHT.replace("ANGLE", "1/10^13")), 10)
+    assert run["a"] == pytest.approx(1e-13 * np.cos(np.sqrt(9.81) * run.times), abs=1e-13 * 1e-6)

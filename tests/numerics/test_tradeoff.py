@@ -292,6 +292,15 @@ def test_a_finite_escape_time_is_an_answer(tmp_path: Path) -> None:
     assert "no reference solution up to t = 20" in found.output
 
 
+@pytest.mark.parametrize("angle", ["pi", "0"])
+def test_an_equilibrium_has_no_best_method(angle: str, tmp_path: Path) -> None:
+    """No run of it is better than another, and those that roundings move are not chaotic."""
+    path = tmp_path / "upright.yaml"
+    path.write_text(PENDULUM)
+    found = run(path, "--time", 5, "--set", f"theta={angle}", "--out", tmp_path, code=1)
+    assert "there is nothing to compare: the initial state is an equilibrium" in found.output
+
+
 def test_a_trial_that_fails_in_a_way_that_nobody_foresaw_costs_its_ladder_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

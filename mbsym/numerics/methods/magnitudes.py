@@ -52,7 +52,10 @@ LEAST = 1e-4
 SHARE = 1 / 32
 
 #: Nor for so little that its tolerance is below so many roundings of that size; velocities change by more than theirs.
-ROUNDINGS, OF_VELOCITIES = 16.0, 1.0
+ROUNDINGS = 16.0
+
+#: Roundings of positions as large as their sizes are, in what a step adds to velocities, such a part of theirs.
+OF_POSITIONS = 1 / 4
 
 #: Where nothing has a size the rates are differed over such a part of what is moved in a time of 1; their changes are
 #: roundings below such a part of them.
@@ -156,14 +159,14 @@ class Magnitudes:
     """``sizes`` (d, m) that a scene gives the components of m states, and ``times`` (m,) in which it moves them.
 
     ``natural`` are those with the rates at the states themselves, of velocities that rest with as much kinetic energy
-    as the others have: a displacement may lead to where forces are much larger.  ``roundings`` (d, 1): of so many,
-    relative to the natural size, no tolerance is less.
+    as the others have: a displacement may lead to where forces are much larger.  ``roundings`` (d, m): their
+    part eps of the arithmetic is lost in every step, by the rounding of positions in what pushes velocities, too.
     """
 
     sizes: Any
     times: Any
     natural: Any
-    roundings: Any = ROUNDINGS
+    roundings: Any
 
     def outgrown(self, state: Any, slopes: Any, member: int = 0) -> bool:
         """Whether a state (d,) or its rates (d,) are blown up: 10^12 of the sizes, or no numbers."""
@@ -175,7 +178,7 @@ class Magnitudes:
         """The least L (d, m) for a tolerance in an arithmetic whose next number after 1 is 1 + ``precision``."""
         if not tolerance > 0:
             return np.maximum(self.natural, SMALLEST)
-        return np.maximum(np.maximum(LEAST, self.roundings * precision / tolerance) * self.natural, SMALLEST)
+        return np.maximum(np.maximum(LEAST * self.natural, self.roundings * precision / tolerance), SMALLEST)
 
 
 def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:
@@ -253,7 +256,10 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     own = np.maximum(own, _alike(own, weights))
     natural[moving] = np.minimum(sizes[moving], np.where(own > 0, own, SHARE * sizes[moving]))
     natural[np.broadcast_to(kinds.differences, len(natural))] = 1 / LEAST
-    return Magnitudes(sizes, shortest, natural, np.where(kinds.velocities, OF_VELOCITIES, ROUNDINGS)[:, None])
+    roundings = ROUNDINGS * natural
+    passed = np.max(absolute[placed] / np.where(sizes[placed] > 0, sizes[placed], 1.0), axis=0, initial=0.0)
+    roundings[moving] = np.maximum(natural[moving], OF_POSITIONS * passed * sizes[moving])
+    return Magnitudes(sizes, shortest, natural, roundings)
 
 
 def _from_rest(rates: Rates, begin: Any, states: Any, placed: Any, moving: Any, ways: Any, rate: Any, base: Any) -> Any:

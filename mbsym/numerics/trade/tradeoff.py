@@ -42,6 +42,7 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.planning.prices import STARTED, STARTED_EACH
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.simulate import Rests, begins_in_equilibrium
 from mbsym.numerics.states import dynamics_of
 from mbsym.numerics.trade import fidelity
 from mbsym.numerics.trade.fidelity import ModelError
@@ -425,11 +426,13 @@ def studied(
     Of a system with constraints the initial state is the closest one that satisfies them; with speeds these are
     integrated.
 
-    Raises NotClosed, Breakdown where there is no reference solution up to ``end``, Failure where the equations have no
-    program.
+    Raises NotClosed, Breakdown where there is no reference solution up to ``end``, Rests where nothing moves, Failure
+    where the equations have no program.
     """
     scenario = begun(scenario).scenario
     dynamics = dynamics_of(scenario)
+    if begins_in_equilibrium(dynamics):
+        raise Rests
     watch("reference solution")
     usual, at_most = (max(LEAST_FOR_REFERENCE, part * budget) for part in (FOR_REFERENCE, MOST_FOR_REFERENCE))
     truth = whole_reference(dynamics, end, usual, watch, at_most)

@@ -187,8 +187,25 @@ def quality(run: Simulation) -> tuple[list[Message], list[Message], bool]:
     Whoever reads one line of a run that is wrong, or that nobody could judge, shall read that: it stands before what is
     proved of the equations.
     """
+    if run.begins_in_equilibrium:
+        return [], [_strayed(run)], False
     messages = list(error_lines(run.error))
     return list(warnings(run.conservation, run.error)), messages, isinstance(run.error, NoEstimate)
+
+
+#: A component that rests has strayed where it has moved by more roundings of its largest value.
+STRAYED = 64
+
+
+def _strayed(run: Simulation) -> Message:
+    """How far a run has moved from an equilibrium in which it begins, which no exact motion leaves."""
+    states = np.asarray(run.trajectory.states, dtype=float)
+    gaps, sizes = np.max(np.abs(states - states[:, :1]), axis=1), np.max(np.abs(states), axis=1)
+    far = int(np.argmax(gaps))
+    if gaps[far] <= STRAYED * np.finfo(float).eps * sizes[far]:
+        return Message("none: it rests in this run, too")
+    text = "[[name]] strays by up to [[gap]] by roundings (they grow where an equilibrium is unstable)"
+    return Message(text, name=[*run.dynamics.inputs][1 + far], gap=f"{gaps[far]:.1e}")
 
 
 def error_json(estimate: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstimate:

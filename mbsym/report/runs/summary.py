@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import time_unit, with_unit
-from mbsym.numerics.simulate import least_pivot
+from mbsym.numerics.simulate import BEGIN_BESIDE, least_pivot
 from mbsym.report.runs.certificate import certificate_lines
 from mbsym.report.runs.constrained_run_words import constraint_lines
 from mbsym.report.runs.events import events_lines
@@ -53,6 +53,8 @@ def result_lines(run: Simulation, file: str) -> Iterator[tuple[str, str]]:
     yield from (("warning", text) for text in doubts)
     if unknown:
         yield from errors
+    if run.begins_in_equilibrium:
+        yield "motion", Message("none: the initial state is an equilibrium; [[advice]]", advice=BEGIN_BESIDE)
     if run.plan is not None:
         yield from bound_lines(run.plan, unit)
     yield "time", _time_line(run, unit)
