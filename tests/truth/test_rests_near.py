@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 import mbsym
@@ -444,3 +446,13 @@ def test_rests_of_a_roly_poly_are_listed_with_these_verdicts() -> None:
     assert len(words) == 4
     for (al, be), found in words.items():
         assert found is (Word.STABLE_BUT_CYCLIC if al == be else Word.UNSTABLE)
+
+
+def test_where_angles_are_singular_a_rolling_ball_need_not_rest() -> None:
+    """V = -cos(al) cos(be) has no place of rest on its side, though its slopes by al and be vanish at pi/2, pi/2."""
+    text = ROLY_POLY.replace("TURN", VERTICAL_FIRST).replace("A}", "0}")
+    text = text.replace("uniform gravity: {vector: [0, 0, -10]}", "potential: -cos(al)*cos(be)")
+    system = mbsym.loads(text, ()).system
+    listed = relative_equilibria(system, given_values(system, {}))
+    assert len(listed.equilibria) == len(listed.singular) == 4
+    assert {abs(x.value) for one in listed.singular for x in one.values} == {math.pi / 2}
