@@ -122,14 +122,17 @@ def _moves_evenly(
         ]
         inertia = ring.dot(along, [ring.dot(row, along) for row in there.equations.mass_matrix.polynomials])
         moves = any(there.signs.never_zero(ring.reduce(ring.substitute(x, place))) for x in along)
-        if moves and all(vanishes(ring.derivative(inertia, name)) for name in names):
-            if _vanish_along(there, [ring.dot(row, along) for row in rows], along, vanishes):
-                return True
+        still = moves and all(vanishes(ring.derivative(inertia, name)) for name in names)
+        if still and _vanish_along(there, [ring.dot(row, along) for row in rows], along, vanishes):
+            return True
     return False
 
 
 def _vanish_along(
-    there: Analysis, functions: Iterable[Polynomial], along: Direction, vanishes: Callable[[Polynomial], bool]
+    there: Analysis,
+    functions: Iterable[Polynomial],
+    along: Sequence[Polynomial],
+    vanishes: Callable[[Polynomial], bool],
 ) -> bool:
     """Whether functions of q are 0 on the orbit of a field, which begins where ``vanishes`` looks.
 

@@ -336,7 +336,7 @@ class Manifold:
     @cached_property
     def is_kept_at_values(self) -> bool:
         """Whether a position that keeps all constraints was found at the given values of the parameters."""
-        return self._own_rank is not None or next(self._roots_at_values(_ATTEMPTS), None) is not None
+        return self._own_rank is not None or next(self._roots_at_values(2 * _TRIED), None) is not None
 
     def _roots_at_values(self, tries: int) -> Iterator[dict[str, Any]]:
         """Proved roots near random places, at the given values of the parameters."""
