@@ -33,6 +33,9 @@ from mbsym.model.substitution import beside_rest
 from mbsym.problems.stability.verdict import Flaw, Verdict, concluded
 from mbsym.problems.stability.words import CHETAEV, LAGRANGE, Because, Fact, Ground, Reason, Word
 
+#: So often functions are differentiated along a field.
+MOST_DERIVATIVES = 6
+
 #: In bits, of the sign of a number that is not 0.
 PRECISION = 200
 
@@ -87,7 +90,7 @@ def _drifts(analysis: Analysis, there: Analysis) -> bool:
     place = unperturbed_with(there.scene, relations(there.scene))
     carry = Carrier(analysis.ring, ring, ring_environment(there.system, ring))
     rows = [[carry(x) for x in row] for row in analysis.constraints.jacobian.polynomials]
-    if _moves_evenly(there, rows, found.directions[: found.constant], place):
+    if _moves_evenly(there, rows, (*found.directions[: found.constant], *there.balance.varying_fields), place):
         return True
     fields = found.directions
     held = [[ring.reduce(ring.dot(row, one)).to_dict() for row in rows] for one in fields]
@@ -102,20 +105,56 @@ def _drifts(analysis: Analysis, there: Analysis) -> bool:
 def _moves_evenly(
     there: Analysis, rows: list[list[Polynomial]], fields: Sequence[Direction], place: Mapping[int, Polynomial]
 ) -> bool:
-    """Whether q0 + e t D is a motion for every e: J D = 0 at q0, dJ = 0 along D, and D^T M D is stationary at q0."""
+    """Whether exp(e t c) q0 is a motion for every e, c a symmetry of the system without the rows J, at rest at q0.
+
+    Without them it is one where c^T M c is stationary at q0: along c, which keeps T, the acceleration is that of the
+    forces at rest less grad(c^T M c)/2.  J allows it where J c = 0 along the orbit.
+    """
     ring, names = there.ring, there.system.coordinates
 
-    def vanish(polynomials: Iterable[Polynomial]) -> bool:
-        return all(ring.is_zero(ring.reduce(x)) is True for x in polynomials)
+    def vanishes(x: Polynomial) -> bool:
+        return ring.is_zero(ring.reduce(ring.substitute(x, place))) is True
 
-    allowed = ([ring.dot([ring.substitute(x, place) for x in row], one) for one in fields] for row in rows)
+    allowed = ([ring.substitute(ring.dot(row, one), place) for one in fields] for row in rows)
     for weights in kernel(ring, *allowed) if fields else ():
-        along = [ring.dot(list(weights.values()), [fields[k][i] for k in weights]) for i in range(len(names))]
+        along = [
+            ring.reduce(ring.dot(list(weights.values()), [fields[k][i] for k in weights])) for i in range(len(names))
+        ]
         inertia = ring.dot(along, [ring.dot(row, along) for row in there.equations.mass_matrix.polynomials])
-        changes = (ring.dot(along, [ring.derivative(x, name) for name in names]) for row in rows for x in row)
-        pulls = (ring.substitute(ring.derivative(inertia, name), place) for name in names)
-        if vanish(changes) and vanish(pulls):
+        moves = any(there.signs.never_zero(ring.reduce(ring.substitute(x, place))) for x in along)
+        still = moves and all(vanishes(ring.derivative(inertia, name)) for name in names)
+        if still and _vanish_along(there, [ring.dot(row, along) for row in rows], along, vanishes):
             return True
+    return False
+
+
+def _vanish_along(
+    there: Analysis,
+    functions: Iterable[Polynomial],
+    along: Sequence[Polynomial],
+    vanishes: Callable[[Polynomial], bool],
+) -> bool:
+    """Whether functions of q are 0 on the orbit of a field, which begins where ``vanishes`` looks.
+
+    So they are where they and their derivatives along the field are 0 there, up to those that are combinations of the
+    ones before with constant coefficients: they obey linear equations then.
+    """
+    ring = there.ring
+    known: list[Polynomial] = []
+    latest = [x for x in map(ring.reduce, functions) if not x.is_zero()]
+    for _ in range(MOST_DERIVATIVES):
+        if not latest:
+            return True
+        if not all(map(vanishes, latest)):
+            return False
+        known += latest
+        slopes = ([ring.derivative(x, name) for name in there.system.coordinates] for x in latest)
+        latest = []
+        for x in (ring.reduce(ring.dot(row, along)) for row in slopes):
+            columns = [*known, *latest, x]
+            last = (relation.get(len(columns) - 1) for relation in kernel(ring, columns))
+            if not x.is_zero() and not any(k is not None and there.signs.never_zero(k) for k in last):
+                latest.append(x)
     return False
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -19,6 +19,7 @@ from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Value, at_numbers
 from mbsym.model.substitution import with_free_rates
 from mbsym.model.system import MotionEntry, Parameter, System
+from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
 from mbsym.problems.relative_equilibria.listing import (
     ELSEWHERE,
@@ -70,24 +71,33 @@ def _decided(bare: System, listed: RelativeEquilibrium | EquilibriumFamily) -> V
     if isinstance(listed, EquilibriumFamily):
         if bare.constraints and known.because(Because.NOT_ENCLOSED):  # the constraints are singular there
             return known
-        return _decided_at(bare, listed.sample, listed.enclosures, known)
-    free = () if bare.constraints or not listed.free else _telling(bare, listed.free)
+        return _decided_at(bare, listed.sample, listed, known)
+    if bare.constraints and listed.free and not any(map(known.because, _KNOWN_BETTER)):
+        return known
+    at_zero = _decided_at(bare, (*listed.values, *(_sampled(bare, x, Fraction(0)) for x in listed.free)), listed, known)
+    free = () if bare.constraints and at_zero.word.open else _telling(bare, listed)
     if not free:
-        return known if bare.constraints and listed.free else _decided_at(bare, listed.values, listed.enclosures, known)
-    at_zero, *others = (
-        _decided_at(bare, (*listed.values, *(_sampled(bare, name, t) for name in free)), listed.enclosures, known)
-        for t in (Fraction(0), *map(fraction, ELSEWHERE))
-    )
-    return also_elsewhere(at_zero, {other.word for other in others}, free)
+        return at_zero
+    words = {
+        _decided_at(bare, (*listed.values, *(_sampled(bare, name, t) for name in free)), listed, known).word
+        for t in map(fraction, ELSEWHERE)
+    }
+    return also_elsewhere(at_zero, words, free)
 
 
-def _telling(bare: System, free: Collection[str]) -> tuple[str, ...]:
+def _telling(bare: System, listed: RelativeEquilibrium) -> tuple[str, ...]:
     """The coordinates of which the equations of motion know more than that any value is one of rest."""
     try:
-        unseen = Analysis(bare, ()).balance.ignorable
+        if bare.constraints:
+            balance = _at(bare, (*listed.values, *(_sampled(bare, x, Fraction(0)) for x in listed.free)), listed)[
+                0
+            ].balance
+            unseen = tuple(filter(balance.shifts, listed.free)) if isinstance(balance, ConstrainedBalance) else ()
+        else:
+            unseen = Analysis(bare, ()).balance.ignorable if listed.free else ()
     except (Failure, *NOT_THERE):
         unseen = ()
-    return tuple(name for name in free if name not in unseen)
+    return tuple(name for name in listed.free if name not in unseen)
 
 
 def _sampled(bare: System, name: str, t: Fraction) -> CoordinateValue:
@@ -96,13 +106,13 @@ def _sampled(bare: System, name: str, t: Fraction) -> CoordinateValue:
     return CoordinateValue(name, str(t), float(t) * math.pi / 12 if angle else float(t), angle, True)
 
 
-def _decided_at(
-    bare: System, values: Sequence[CoordinateValue], enclosures: Mapping[str, Any], known: Verdict
-) -> Verdict:
-    """The verdict at one place; coordinates that are not known exactly are parameters known by their enclosures."""
+def _at(
+    bare: System, values: Sequence[CoordinateValue], listed: RelativeEquilibrium | EquilibriumFamily
+) -> tuple[Analysis, dict[str, Any]]:
+    """The rest at one place; coordinates that are not known exactly are parameters known by their enclosures."""
     known_places = {x.name: _exact(x) for x in values}
     enclosed = {
-        f"{_PLACE}{name}": enclosures[name]
+        f"{_PLACE}{name}": listed.enclosures[name]
         for name, x in known_places.items()
         if x is None and name in bare.coordinates
     }
@@ -115,7 +125,17 @@ def _decided_at(
         if name not in follow and (name in places or not bare.constraints or name in described)
     )
     there = replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed)))
-    analysis = Analysis(with_free_rates(there) if bare.constraints else there, ())
+    return Analysis(with_free_rates(there) if bare.constraints else there, ()), enclosed
+
+
+def _decided_at(
+    bare: System,
+    values: Sequence[CoordinateValue],
+    listed: RelativeEquilibrium | EquilibriumFamily,
+    known: Verdict,
+) -> Verdict:
+    """The verdict at one place."""
+    analysis, enclosed = _at(bare, values, listed)
     try:
         judge = Judge(analysis)
         if not bare.constraints:  # problem 6 knows symmetries that the list does not, and other words

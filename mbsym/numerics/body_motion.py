@@ -19,6 +19,7 @@ import numpy as np
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.tree import names
@@ -26,7 +27,8 @@ from mbsym.mechanics.energy import body_energy
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.mechanics.variables import ring_of
+from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.model.states import InStates, described
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code, Kernel
@@ -55,7 +57,8 @@ class BodyMotions:
 def body_motions(scenario: Scenario, times: Any, states: Any, rates: Any, frame: str = INERTIAL) -> BodyMotions:
     """Of every body that ``frame`` carries, massless ones too, along ``states`` (2n, m) with q'' = ``rates`` (n, m).
 
-    Raises Failure where there is no program for the force function.
+    In declared variables along (s, u) with the rates of both.  Raises Failure where there is no program for the force
+    function.
     """
     return followed_bodies(scenario, frame)(times, states, rates)
 
@@ -64,7 +67,14 @@ def followed_bodies(scenario: Scenario, frame: str = INERTIAL) -> Callable[[Any,
     """``body_motions`` of times, states and rates, for whoever has them bit by bit."""
     system = scenario.system
     program = Program()
-    scene = scene_without_accelerations(system, ring_of(system), program)
+    carried: list[Node] = []
+    if isinstance(system, InStates):
+        form = SpeedForm(described(system), ring_of(described(system)))
+        environment = dict(program_environment(form.system, program))
+        scene, carry = form.scene_over(program, environment), Carrier(form.ring, program, environment)
+        carried = [carry(form.rates[name]) for name in system.coordinates]
+    else:
+        scene = scene_without_accelerations(system, ring_of(system), program)
     algebra = scene.algebra
     names = tuple(body.name for body in system.bodies if frame in system.path(body.name)[:-1])
     fixed: list[Node] = []
@@ -79,14 +89,15 @@ def followed_bodies(scenario: Scenario, frame: str = INERTIAL) -> Callable[[Any,
     nodes = substituted(program, fixed, fresh)
     each = 3 + 9 + 3 + 1
     places = [node for k in range(len(names)) for node in nodes[each * k : each * k + 3]]
-    first = _rate(fresh, places, system.coordinates, system.velocities)
-    second = _rate(
-        fresh,
-        first,
-        (*system.coordinates, *system.velocities),
-        (*system.velocities, *map(acceleration_name, system.coordinates)),
-    )
-    inputs = ("t", *system.coordinates, *system.velocities, *map(acceleration_name, system.coordinates))
+    state, accelerations = (*system.coordinates, *system.velocities), [*map(acceleration_name, system.coordinates)]
+    moving = [*map(fresh.input, system.velocities)]
+    rates = [*system.velocities, *accelerations]
+    if isinstance(system, InStates):
+        rates = accelerations = [f"rate of {name}" for name in state]
+        moving = substituted(program, carried, fresh)
+    first = _rate(fresh, places, system.coordinates, moving)
+    second = _rate(fresh, first, state, [*map(fresh.input, rates)])
+    inputs = ("t", *state, *accelerations)
     compiled = kernels({"bodies": Code(fresh, inputs, (*nodes, *first, *second))})
     return lambda times, states, rates: _evaluated(compiled["bodies"], names, frame, times, states, rates)
 
@@ -113,16 +124,15 @@ def _evaluated(kernel: Kernel, names: tuple[str, ...], frame: str, times: Any, s
     )
 
 
-def _rate(program: Program, outputs: Sequence[Node], names: Sequence[str], rates: Sequence[str]) -> list[Node]:
+def _rate(program: Program, outputs: Sequence[Node], names: Sequence[str], rates: Sequence[Node]) -> list[Node]:
     """d/dt of nodes: the partial derivative by t, and those by ``names`` times their ``rates``."""
     if not outputs:
         return []
     rows = jacobian(program, outputs, [program.input("t"), *map(program.input, names)])
-    moving = [program.input(name) for name in rates]
     nodes = []
     for row in rows:
         total = row[0]
-        for partial, rate in zip(row[1:], moving, strict=True):
+        for partial, rate in zip(row[1:], rates, strict=True):
             total = total + partial * rate
         nodes.append(total)
     return nodes

@@ -103,9 +103,13 @@ class ConstrainedBalance(Balance):
         if self.about is None or self._rows is None or self.energy is None:
             return False
         try:
-            return all(self._absent_everywhere(name) or self._symmetric(name) for name in self.about.idle)
+            return all(map(self.shifts, self.about.idle))
         except Failure:
             return False
+
+    def shifts(self, name: str) -> bool:
+        """Whether a shift of this coordinate, alone or with a linear map of others, is a symmetry (``closed``)."""
+        return self._absent_everywhere(name) or self._symmetric(name)
 
     def _absent_everywhere(self, name: str) -> bool:
         entries = [x for row in self._rows or () for x in _entries(row)]

@@ -197,6 +197,11 @@ class Balance:
         return among(self.scene.ring, self._fields, self.scene.system.coordinates, coordinates)
 
     @property
+    def varying_fields(self) -> tuple[Direction, ...]:
+        """Those that vary with the position, as functions of it: their flows take motions into motions."""
+        return tuple(c for c, value, _ in self._fields if c != value)
+
+    @property
     def _allowing(self) -> tuple[Direction, ...] | None:
         """The rows J of constraints, which allow a displacement c where J c = 0; None where they are not known."""
         return None if self.scene.system.constraints else ()

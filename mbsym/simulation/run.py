@@ -47,7 +47,7 @@ from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of, state_names
 from mbsym.numerics.tangent import on_tangent
 from mbsym.numerics.watched import between_rows, nearest_to_singular
-from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
+from mbsym.simulation.request import DECLARED, Request, wrong_with
 from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
 from mbsym.simulation.sampling import chosen_for
 from mbsym.simulation.watching import Watching
@@ -194,16 +194,10 @@ def integrated_system(system: System, variables: str = DECLARED) -> System:
     return in_states(system, *state_names(system))
 
 
-#: What a run in declared variables does not do, and how that is asked for.
-NOT_IN_STATES = "integrates coordinates and their velocities only; this system has speeds"
-
-
 def refuse_in_run(system: System, request: Request) -> None:
-    """With speeds, raises ValueError and Unusable for what does not know them."""
+    """With speeds, raises Unusable for a method that does not know them."""
     if not runs_in_states(system, request):
         return
-    if request.earlier is not None:
-        raise ValueError(f"going on from an earlier run {NOT_IN_STATES}: take variables='{COORDINATES}'")
     if request.method in METHODS and METHODS[request.method].traits.conservative:
         text = "[[method]] integrates coordinates and their velocities only; this system has speeds"
         raise Unusable(Message(text, method=request.method))

@@ -8,6 +8,7 @@ import re
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import Result
 from conftest import SHIPPED, invoked, reference
@@ -98,7 +99,6 @@ def test_with_another_speed_the_other_speeds_stay(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("--bodies", ("--bodies",)),
         ("--method", ("--method", "midpoint", "--step", "0.1")),
         ("--method", ("--method", "lsoda")),
     ],
@@ -144,3 +144,37 @@ def test_a_few_motions_of_a_grid_are_drawn_beside_each_other(tmp_path: Path) -> 
     ours = {"p": "p", "q": "q", "r": "r", "gamma": "gamma1", "gammap": "gamma2", "gammapp": "gamma3"}
     wanted = {name: float(row[key]) for key, name in ours.items()}
     assert max(abs(float(last[f"{name}_final"]) - value) for name, value in wanted.items()) < 1e-8
+
+
+@pytest.mark.parametrize("name", ["gravity-gradient-quaternion", "euler-poisson", "rolling-disc-speeds"])
+def test_bodies_do_the_same_in_declared_variables(name: str, tmp_path: Path) -> None:
+    """Places, velocities, accelerations, angular velocities, energies; of the disc under constraints."""
+    tables = []
+    for variables in ("declared", "coordinates"):
+        words = ("--time", 1, "--samples", 6, "--no-estimate", "-f", "csv", "--bodies", "--variables", variables)
+        called(SHIPPED / f"{name}.yaml", *words, "--out", tmp_path / variables, code=0)
+        with (tmp_path / variables / "bodies.csv").open(encoding="utf-8") as lines:
+            tables.append(list(csv.reader(lines)))
+    assert tables[0][0] == tables[1][0]
+    own, other = (np.array(rows[1:], dtype=float) for rows in tables)
+    assert own == pytest.approx(other, rel=1e-8, abs=1e-8 * np.abs(other).max())
+
+
+@pytest.mark.parametrize("name", ["gravity-gradient-quaternion", "rolling-disc-speeds"])
+def test_a_run_in_declared_variables_goes_on(name: str, tmp_path: Path) -> None:
+    """Two parts are one run, to its tolerance."""
+    usual = (SHIPPED / f"{name}.yaml", "--no-estimate", "-f", "csv", "--every", "0.1", "--out")
+    called(*usual, tmp_path / "first", "--time", 1, code=0)
+    on = ("--continue", tmp_path / "first" / "simulation.json")
+    called(usual[0], "--no-estimate", "-f", "csv", "--time", 2, *on, "--out", tmp_path / "on", code=0)
+    called(*usual, tmp_path / "whole", "--time", 2, code=0)
+    tables = [np.genfromtxt(tmp_path / part / "trajectory.csv", delimiter=",", names=True) for part in ("on", "whole")]
+    assert tables[0].dtype.names == tables[1].dtype.names
+    assert len(tables[0]) == 21
+    for column in tables[0].dtype.names:
+        if "drift" not in column:
+            assert tables[0][column] == pytest.approx(tables[1][column], rel=1e-8, abs=1e-9)
+    changed = called(usual[0], "--time", 3, "--continue", tmp_path / "on" / "simulation.json", "--set", "m=7", code=2)
+    assert "that run had other values: m was " in " ".join(changed.stderr.split())
+    there = called(usual[0], "--time", 3, *on, "--variables", "coordinates", "--out", tmp_path / "no", code=2)
+    assert "its last state is not that of these coordinates" in " ".join(there.stderr.split())

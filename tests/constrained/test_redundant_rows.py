@@ -806,3 +806,22 @@ def test_an_fmu_begins_where_its_description_does(tmp_path: Path) -> None:
     )
     own = simulate(begun(case("segway")), Request(time=0.5, samples=2, estimate=False))
     assert [run[name][-1] for name in names] == pytest.approx([own[name][-1] for name in names], abs=1e-6)
+
+
+@pytest.mark.parametrize(("crank", "kept"), [("1", True), ("15/2", False), ("8", False), (None, None)])
+def test_a_four_bar_that_cannot_be_closed_is_told_so(crank: str | None, kept: bool | None, tmp_path: Path) -> None:
+    """A crank of at least 3 + 5/2 + 2 reaches no point that the other bars do, or them in line alone."""
+    links = {"crank": ("s", "q1", "0, 0"), "coupler": ("3", "q2", "s, 0"), "rocker": ("5/2", "q3", "2, 0")}
+    bodies = [
+        f"{{name: {name}, attached to: {'crank' if name == 'coupler' else 0}, connection point: [{at}, 0], rotation: "
+        f"{{axes: [3], angles: [{angle}]}}, mass centre: [{length}/2, 0, 0], mass: 1}}"
+        for name, (length, angle, at) in links.items()
+    ]
+    tie = "coincide: [{body: coupler, point: [3, 0, 0]}, {body: rocker, point: [5/2, 0, 0]}]"
+    value = "" if crank is None else f", value: {crank}"
+    text = f"mbsym: 1\nname: four-bar\nparameters: {{s: {{sign: positive{value}}}}}\nbodies: [{', '.join(bodies)}]\n"
+    text += f"constraints: [{tie}]\n"
+    assert mbsym.loads(text).constraints.kept_at_values is kept
+    done = invoked("run", filed(tmp_path / "four-bar.yaml", text), "--problems", 3, "--out", tmp_path / "out")
+    told = "at the given values no regular configuration that keeps all constraints was found"
+    assert (told in " ".join(done.output.split())) is (kept is False)

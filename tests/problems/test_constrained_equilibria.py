@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import system_of
-from scipy.optimize import fsolve
+from scipy.optimize import brentq, fsolve
 
 import mbsym
 from mbsym.algebra.failures import Constrained
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
-from mbsym.problems.stability.words import Because
+from mbsym.problems.stability.words import Because, Word
 
 HEAD = "mbsym: 1\nname: Tied\n"
 
@@ -582,3 +582,38 @@ def test_the_rest_that_is_described_is_listed(potential: str, constraints: str, 
     listed = analysis.equilibria.equilibria
     assert [one.verdict.word.value for one in listed] == [word]
     assert analysis.stability.numerical.word.value == word
+
+
+GEARS = """
+mbsym: 1
+name: two pendulums by gears
+bodies:
+  - {name: A, attached to: 0, rotation: {axes: [3], angles: [a]}, mass centre: [1, 0, 0], mass: 1}
+  - {name: B, attached to: 0, rotation: {axes: [3], angles: [b]}, mass centre: [0, -1, 0], mass: 1}
+loads: [uniform gravity: {vector: [0, -1, 0]}, potential: K*a**2/2]
+constraints: [relation: RELATION]
+"""
+
+
+@pytest.mark.parametrize(
+    ("relation", "ratio"), [("a + 2*b = 0", -2), ("b = -a/2", -2), ("3*a = 3*b", 1), ("a/4 + b/4 = 0", -1)]
+)
+@pytest.mark.parametrize("stiffness", ["0", "1/10"])
+def test_angles_that_gears_tie(relation: str, ratio: int, stiffness: str) -> None:
+    """V = K a^2/2 + sin a - cos b with a = ratio b: its stationary values by SciPy, up to turns without a spring."""
+    k = float(Fraction(stiffness))
+
+    def slope(b: float) -> float:
+        return float(ratio * (k * ratio * b + np.cos(ratio * b)) + np.sin(b))
+
+    bounds = np.linspace(-np.pi, np.pi, 500) if not k else np.linspace(-21, 21, 5000)
+    wanted = sorted(brentq(slope, *pair) for pair in pairwise(bounds) if slope(pair[0]) * slope(pair[1]) < 0)
+    found = listed(GEARS.replace("RELATION", relation).replace("K", stiffness))
+    assert found.complete
+    places = [{x.name: x.value for x in one.values} for one in found.equilibria]
+    assert sorted(x["b"] for x in places) == pytest.approx(wanted, abs=1e-8)
+    for x in places:
+        turns = (x["a"] - ratio * x["b"]) / (2 * np.pi)
+        assert turns == pytest.approx(0 if k else round(turns), abs=1e-8)
+    for one, b in zip(found.equilibria, [x["b"] for x in places], strict=True):
+        assert (one.verdict.word is Word.STABLE) is (slope(b + 1e-5) > slope(b - 1e-5))

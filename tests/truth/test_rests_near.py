@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 import mbsym
@@ -394,3 +396,63 @@ def test_a_family_within_another_is_not_told_again() -> None:
     # F = x (y^2 + z^2 - 1): the plane and the cylinder are two, and their circle is in both
     crossed = mbsym.loads(OPEN_VALLEY.replace("V,", "x**2*(y**2 + z**2 - 1)**2,").replace("d*", "0*")).system
     assert [family.dimension for family in relative_equilibria(crossed, given_values(crossed, {})).families] == [2, 2]
+
+
+ROLY_POLY = """
+mbsym: 1
+name: roly-poly
+parameters: {a: A}
+bodies:
+  - {name: centre, attached to: 0, connection point: [x, y, 1], coordinates: [x, y], mass: 0}
+  - {name: ball, attached to: centre, rotation: TURN, mass: 2, mass centre: [0, 0, -a], inertia about: mass centre,
+     inertia: [1/5, 1/4, 3/10]}
+loads: [uniform gravity: {vector: [0, 0, -10]}]
+constraints: [rolling: {body: ball, point: [0, 0, -1], axes: centre, on: ground}]
+motion: {x: 0, y: 0, al: 0, be: 0, ga: 0}
+"""
+VERTICAL_FIRST = "{axes: [3, 1, 2], angles: [ga, al, be]}"
+
+
+@pytest.mark.parametrize(
+    ("turn", "height", "more", "wanted"),
+    [
+        # T + m g a (1 - cos) bounds the tilt; turning evenly about the vertical it stays where it is
+        (VERTICAL_FIRST, "1/10", "", [Word.STABLE_BUT_CYCLIC]),
+        ("{axes: [1, 2, 3], angles: [al, be, ga]}", "1/10", "", [Word.STABLE_BUT_CYCLIC]),
+        ("{axes: [2, 1, 3], angles: [be, al, ga]}", "1/10", "", [Word.STABLE_BUT_CYCLIC]),
+        (VERTICAL_FIRST, "-1/10", "", [Word.UNSTABLE]),
+        # It must not turn about the vertical (rubber): that it drifts is not shown
+        (
+            VERTICAL_FIRST,
+            "1/10",
+            ", velocity: ga_dot + be_dot*sin(al) = 0",
+            [Word.STABLE, Word.CRITICAL, Word.UNDECIDED],
+        ),
+        (VERTICAL_FIRST, "1/10", ", velocity: ga_dot = x_dot", [Word.STABLE, Word.CRITICAL, Word.UNDECIDED]),
+    ],
+)
+def test_a_roly_poly_stands_up_in_any_angles(turn: str, height: str, more: str, wanted: list[Word]) -> None:
+    text = ROLY_POLY.replace("TURN", turn).replace("A}", f"{{sign: real, value: {height}}}}}")
+    assert word(text.replace("ground}]", f"ground}}{more}]")) in wanted
+
+
+def test_rests_of_a_roly_poly_are_listed_with_these_verdicts() -> None:
+    """al and be are 0 or pi, the others any: upright where both are the same."""
+    system = mbsym.loads(
+        ROLY_POLY.replace("TURN", VERTICAL_FIRST).replace("A}", "{sign: real, value: 1/10}}"), ()
+    ).system
+    listed = relative_equilibria(system, given_values(system, {}))
+    words = {tuple(x.value for x in one.values): one.verdict.word for one in listed.equilibria}
+    assert len(words) == 4
+    for (al, be), found in words.items():
+        assert found is (Word.STABLE_BUT_CYCLIC if al == be else Word.UNSTABLE)
+
+
+def test_where_angles_are_singular_a_rolling_ball_need_not_rest() -> None:
+    """V = -cos(al) cos(be) has no place of rest on its side, though its slopes by al and be vanish at pi/2, pi/2."""
+    text = ROLY_POLY.replace("TURN", VERTICAL_FIRST).replace("A}", "0}")
+    text = text.replace("uniform gravity: {vector: [0, 0, -10]}", "potential: -cos(al)*cos(be)")
+    system = mbsym.loads(text, ()).system
+    listed = relative_equilibria(system, given_values(system, {}))
+    assert len(listed.equilibria) == len(listed.singular) == 4
+    assert {abs(x.value) for one in listed.singular for x in one.values} == {math.pi / 2}

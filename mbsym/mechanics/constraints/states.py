@@ -327,14 +327,24 @@ class Manifold:
 
     def ranks_at_values(self) -> tuple[int, ...]:
         """The ranks of J at positions that were found at the given values of the parameters."""
+        ranks = [] if self._own_rank is None else [self._own_rank]
+        for values in self._roots_at_values(_TRIED):
+            with suppress(*NOT_THERE):
+                ranks.append(self._rank(values))
+        return tuple(ranks)
+
+    @cached_property
+    def is_kept_at_values(self) -> bool:
+        """Whether a position that keeps all constraints was found at the given values of the parameters."""
+        return self._own_rank is not None or next(self._roots_at_values(2 * _TRIED), None) is not None
+
+    def _roots_at_values(self, tries: int) -> Iterator[dict[str, Any]]:
+        """Proved roots near random places, at the given values of the parameters."""
         known = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in known_values(self.system).items()}
         source = random.Random(SEED)
-        ranks = [] if self._own_rank is None else [self._own_rank]
-        for _ in range(_TRIED):
+        for _ in range(tries):
             with suppress(*NOT_THERE):
-                values = self._drawn(source) | known
-                ranks.append(self._rank(self._root(values, self.system.coordinates)))
-        return tuple(ranks)
+                yield self._root(self._drawn(source) | known, self.system.coordinates)
 
     # --- rational numbers ---
 

@@ -292,6 +292,7 @@ class _Analysis:
                 points,
             ),
             rank_beside=self.manifold.rank_beside if self.manifold.at_values else None,
+            kept_at_values=self._is_kept_at_values(holonomic),
         )
 
     @staticmethod
@@ -397,6 +398,11 @@ class _Analysis:
             return all(ring.is_zero(x) is True for x in left)
         except NoClosedForm:
             return False
+
+    def _is_kept_at_values(self, position_rank: int) -> bool | None:
+        if not position_rank or known_values(self.system).keys() < {*self.system.parameter_names}:
+            return None
+        return self.manifold.is_kept_at_values
 
     def _demanded(self, points: _Points, position_rank: int, rank: int) -> Demanded:
         """Relations between parameters that phi = 0 demands: what its rank gains by the parameters, and which."""

@@ -102,7 +102,8 @@ class Constraints(Shown):
     ``independent`` are row numbers; ``velocity_rank`` their number r, ``position_rank`` h.  ``dependent_sets`` are the
     rows that follow from others, in sets that hang together, ``dependent_positions`` those of the rows on positions
     alone.  ``demanded`` are the relations between parameters that the position constraints demand.  ``rank_beside``:
-    the rank at values of the parameters near those given, where it is another, else None.
+    the rank at values of the parameters near those given, where it is another, else None.  ``kept_at_values``: whether
+    a position that keeps all constraints was found at the given values; None where values or constraints are missing.
     ``alone`` says of every independent
     velocity constraint whether it is integrable by itself, on all configurations (None: undecided).  ``solved`` is None
     where the formulas outgrow the budget; ``pivots`` say how a program does it.  With ``in_speeds`` the
@@ -129,6 +130,7 @@ class Constraints(Shown):
     dependent_sets: tuple[Dependent, ...] = ()
     dependent_positions: tuple[Dependent, ...] = ()
     rank_beside: int | None = None
+    kept_at_values: bool | None = None
 
     @property
     def velocity_rank(self) -> int:

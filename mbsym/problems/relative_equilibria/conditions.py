@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
+from math import gcd, lcm
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_systems import Limits
+from mbsym.algebra.rationals import fraction
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.terms import apart
+from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Message
 from mbsym.mechanics.charts import Chart, moments
 from mbsym.mechanics.rest import Rest
@@ -58,6 +62,7 @@ class Conditions:
                 self.impossible = True
             elif not numerator.is_zero():
                 self.equations.append(numerator)
+        self._take_relations_of_angles_for_turns()
         used = set(occurring(self.equations))
         self.occurring = tuple(name for name in rest.constant if any(ring.depends_on(x, name) for x in self.equations))
         self.free = tuple(name for name in rest.constant if name not in self.occurring)
@@ -67,6 +72,20 @@ class Conditions:
         self.nonzero += usual
         self.singular_where = usual
         self.reason = self._obstacle(used)
+
+    def _take_relations_of_angles_for_turns(self) -> None:
+        """Whole numbers n_k without common factor, sum n_k q_k = 0:  sin = 0, cos = 1 of the sum in its place.
+
+        So it is up to turns by 2 pi of angles q_k that occur nowhere else but in sines and cosines.
+        """
+        ring = self.ring
+        for x in tuple(self.equations):
+            whole = _whole_sum(ring, x)
+            others = [y for y in self.equations if y is not x]
+            if whole is None or ring.held([*others, *self.rest.forcing]) & {*occurring([x])}:
+                continue
+            sine, cosine = ring.sin_cos(LinearForm(whole))
+            self.equations = [*others, sine, ring.reduce(cosine - ring.one)]
 
     def _for_all_times(self, x: Polynomial) -> Iterator[Polynomial]:
         """What must vanish so that x does at all times: its coefficients with respect to what moves."""
@@ -165,6 +184,17 @@ class Conditions:
 # number of pivots is the rank of J there:
 #
 #     [J^T | f]  ->  rows without a pivot:  [0 | combination of f],  which has to vanish
+
+
+def _whole_sum(ring: Ring, x: Polynomial) -> tuple[tuple[str, Fraction], ...] | None:
+    """(q_k, n_k) of sum n_k q_k = 0, n_k whole numbers without common factor and q_k angles; else None."""
+    terms = [(ring.generators[k], c) for k in occurring([x]) if (c := x.derivative(k)).is_constant()]
+    total = sum((c * ring.generator(g.kind, g.name) for g, c in terms if g.kind == "coordinate"), ring.zero)
+    if len(terms) < 2 or total != x or any(ring.angles.get(g.name) != 1 for g, _ in terms):
+        return None
+    numbers = {g.name: fraction(c.leading_coefficient()) for g, c in terms}
+    share = Fraction(gcd(*(n.numerator for n in numbers.values())), lcm(*(n.denominator for n in numbers.values())))
+    return tuple(sorted((name, n / share) for name, n in numbers.items()))
 
 
 #: More cases are not told apart.

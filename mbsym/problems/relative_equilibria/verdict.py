@@ -164,9 +164,8 @@ class LinearAtRest:
         """M, D, G, K, N on the displacements Y that constraints allow, K with the curvature of the constraints:
 
         Y^T X Y,    Y^T (K - sum lambda_k dJ_k/dq) Y,    J Y = 0,    f + J^T lambda = 0
+        Where velocities are tied only Y^T M Y is looked at: coordinates are singular where it is.
         """
-        if not all(row.name.holonomic for row in self.rest.rows):
-            return undecided(Because.NO_EQUATIONS, OF_VELOCITIES)
         numbers: Algebra[Any] = Balls({}) if place.modulus is None else NumberField(place.modulus, place.enclose)
         look = place.ball if place.modulus is None else place.residue
         n = len(self.rest.system.coordinates)
@@ -189,6 +188,12 @@ class LinearAtRest:
                 reduced, pivots = echelon(numbers, [[row[k] for k in columns] for row in jacobian], n, **weigh)
                 basis = null_vectors(numbers, dict(zip(pivots, reduced, strict=False)), n)
                 pivots, basis = [columns[k] for k in pivots], [[v[columns.index(k)] for k in range(n)] for v in basis]
+                if not all(row.name.holonomic for row in self.rest.rows):
+                    mass = [[numbers.dot(row, y) for row in parts[0]] for y in basis]
+                    mass = [[numbers.reduce(numbers.dot(x, z)) for z in mass] for x in basis]
+                    if len(echelon(numbers, mass, len(basis), **weigh)[1]) < len(basis):
+                        return undecided(Because.MASS_SINGULAR)
+                    return undecided(Because.NO_EQUATIONS, OF_VELOCITIES)
                 solved, taken = echelon(numbers, table, len(jacobian), **weigh)
                 multipliers = dict(zip(taken, (row[-1] for row in solved), strict=False))
                 for k, multiplier in multipliers.items():

@@ -226,7 +226,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "equations: terms of higher order decide."
     ),
     Because.MORE_ZERO_ROOTS: (
-        "Zero roots beside those of coordinates that drop out: [[1]]; of these a family of steady motions explains "
+        "Zero roots beside those of coordinates that drop out: [[1]]; shown to be those of a family of steady motions: "
         "[[2]]. Terms of higher order decide."
     ),
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",

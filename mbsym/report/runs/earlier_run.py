@@ -15,6 +15,7 @@ import numpy as np
 
 from mbsym.expressions.message import Counted, Message, worded
 from mbsym.model.quantities import marked
+from mbsym.model.states import described
 from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.methods.interface import Cause
@@ -63,9 +64,9 @@ class _Content(msgspec.Struct, frozen=True):
 
 
 def read_earlier(path: Path, system: System) -> Earlier:
-    """The run that a ``simulation.json`` tells of.  Raises Unfit."""
+    """The run that a ``simulation.json`` tells of, in the variables of the system.  Raises Unfit."""
     content = _content(path)
-    if content.description_sha256 != meaning(system):
+    if content.description_sha256 != meaning(described(system)):
         raise Unfit("it belongs to another description, or the description has changed since (its hash differs)")
     ended, state = content.ended, content.reached.state
     if ended is not None and ended.kind not in ("interrupted", Cause.STEP_LIMIT):

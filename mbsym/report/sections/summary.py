@@ -172,6 +172,8 @@ def _size(system: System, solved: dict[int, Any]) -> Fact:
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
         if tied.demanded.satisfied is False:
             said += [" ", Said("(at values of the parameters that satisfy further relations; the given ones do not)")]
+        if tied.kept_at_values is False:
+            said += ["; ", Said("at the given values no regular configuration that keeps all constraints was found")]
     cyclic = [] if 2 not in solved or system.constraints else [x for x in solved[2].cyclic if not is_felt(x, solved)]
     cyclic = [name for name in cyclic if name in system.coordinates]  # the others are functions of time
     if cyclic:

@@ -42,6 +42,8 @@ def sentences(constraints: Constraints) -> Iterator[Said]:
         )
     if constraints.demanded.count:
         yield from _demanded(constraints.demanded)
+    if constraints.kept_at_values is False:
+        yield Said("At the given values no regular configuration that keeps all constraints was found.")
     if constraints.rank_beside is not None:
         yield say(
             "These ranks are those at the given values of the parameters; at other values near them [[other]] "
@@ -90,11 +92,9 @@ def _demanded(demands: Demanded) -> Iterator[Said]:
         yield Said("The given values do so.")
     elif demands.satisfied is not None:
         yield Said("The given values do not: what is said of the motion here is not about them.")
-        if demands.freedom is None:
-            yield Said("At the given values no configuration that keeps all constraints was found.")
-        elif not demands.freedom:
+        if demands.freedom == 0:
             yield Said("At the given values nothing can move in any configuration that was found.")
-        else:
+        elif demands.freedom is not None:
             yield say(
                 "At the given values the configurations that were found have [[f]] degrees of freedom at most.",
                 f=str(demands.freedom),

@@ -40,9 +40,6 @@ if TYPE_CHECKING:
 #: What an option that goes with coordinates only is answered with.
 WAY_OUT = "--variables coordinates integrates coordinates and their velocities, angles among them"
 
-#: Formats that tell what bodies do, which is known in coordinates.
-OF_BODIES = {"bodies-csv": "--bodies"}
-
 #: A first try of a fixed step is the whole time divided by this.
 TRIAL_STEPS = 10_000
 
@@ -134,15 +131,15 @@ def settled(context: Asked, request: Command) -> Settled:
     if "fixed" in typed:
         run_request = _fixed(run_request, request.fixed, system, wrong)
     if request.path is not None:
-        run_request = _continued(run_request, request.path, system, wrong)
-        run_request = _going_on(run_request, _begun_at(scenario, run_request), typed, wrong)
+        run_request = _continued(run_request, request.path, seen, wrong)
+        run_request = _going_on(run_request, _begun_at(scenario, run_request, seen is not system), typed, wrong)
     _check_held(run_request, system, bool({"vary", "sensitivity"} & set(typed)), wrong)
     if request.vary or "vary" in typed:
         _check_varied(request, run_request, scenario, typed, wrong)
     if "sensitivity" in typed and scenario is not None:
         _sensitive(request.sensitivity, scenario, wrong)
     _check_constrained(system, run_request, wrong)
-    _check_states(seen, run_request, request.formats, wrong)
+    _check_states(seen, run_request, wrong)
     if scenario is not None and seen is not system:
         _check_laws(scenario, wrong)
     if request.accuracy is None:
@@ -341,7 +338,7 @@ def _check_constrained(system: System, request: Run, wrong: Reasons) -> None:
         wrong.complain("--method", "unsuitable-method", message, hint)
 
 
-def _check_states(system: System, request: Run, formats: Sequence[str], wrong: Reasons) -> None:
+def _check_states(system: System, request: Run, wrong: Reasons) -> None:
     """Complains about every option that goes with coordinates only, where a run has other variables."""
     from mbsym.model.states import InStates
 
@@ -349,16 +346,7 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
         return
     from mbsym.numerics.methods.table import LED, METHODS
 
-    options = {
-        "--continue": request.earlier is not None,
-        **{option: kind in formats for kind, option in OF_BODIES.items()},
-    }
-    for option, there in options.items():
-        if there:
-            words = "[[option]] knows coordinates and their velocities only, and this system has speeds"
-            message = Message(words, option=option)
-            wrong.complain(option, "variables", message, WAY_OUT)
-    if request.method not in METHODS or request.method in LED:
+    if request.method not in METHODS or request.method in LED or system.constraints:  # of these it has been told
         return
     these = Message("these do: [[names]]", names=", ".join(("auto", *LED)))
     if METHODS[request.method].traits.conservative:
@@ -427,10 +415,7 @@ def _continued(request: Run, path: Path, system: System, wrong: Reasons) -> Run:
     try:
         earlier = read_earlier(path, system)
     except UnfitRun as error:
-        hint = "take the simulation.json of a run of this FILE"
-        if system.variables:
-            hint = "take the simulation.json of a run of this FILE with --variables coordinates, and go on with this"
-        wrong.complain("--continue", "unfit-run", error.reason, hint)
+        wrong.complain("--continue", "unfit-run", error.reason, "take the simulation.json of a run of this FILE")
         return request
     if 0 < request.time <= earlier.time:
         there = f"{earlier.time:.9g}"
@@ -440,17 +425,17 @@ def _continued(request: Run, path: Path, system: System, wrong: Reasons) -> Run:
     return replace(request, earlier=earlier)
 
 
-def _begun_at(scenario: Scenario | None, request: Run) -> Scenario | None:
+def _begun_at(scenario: Scenario | None, request: Run, declared: bool) -> Scenario | None:
     """With the initial state that a run takes; what was given where there is an answer to that question only later."""
-    if scenario is None or not scenario.system.constraints or request.earlier is None:
+    if scenario is None or request.earlier is None or not (scenario.system.constraints or declared):
         return scenario
     from mbsym.algebra.failures import Failure
-    from mbsym.numerics.closing import closed
+    from mbsym.numerics.closing import begun
     from mbsym.numerics.tangent import on_tangent
 
     try:
-        begun = closed(scenario, request.fixed).scenario
-        return on_tangent(begun, request.fixed) if request.earlier.model.linear else begun
+        start = begun(scenario, request.fixed, declared).scenario
+        return on_tangent(start, request.fixed) if request.earlier.model.linear else start
     except Failure:
         return scenario
 

@@ -72,6 +72,11 @@ class Constraints(Part, frozen=True):
         "whether the given values satisfy them; null where there are none, or not all values are given",
         From("demanded.satisfied"),
     ]
+    kept_at_given_values: Annotated[
+        bool | None,
+        "whether a position that keeps them was found at the given values; null where values are missing",
+        From("kept_at_values"),
+    ]
     velocity_rank_beside: Annotated[
         int | None,
         "velocity_rank at values of the parameters near the given ones, where it is another; else null",
