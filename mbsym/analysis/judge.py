@@ -111,7 +111,7 @@ class Judge:
 
     @cached_property
     def _may_lose_energy(self) -> bool:
-        return higher.forces_bend(self.analysis) and self._loses_energy
+        return not self.analysis.balance.exactly_linear and self._loses_energy
 
     @cached_property
     def _loses_energy(self) -> bool:
