@@ -111,7 +111,8 @@ class Judge:
 
     @cached_property
     def _may_lose_energy(self) -> bool:
-        return not self.analysis.balance.exactly_linear and self._loses_energy
+        balance = self.analysis.balance
+        return not (balance.conserves or balance.exactly_linear) and self._loses_energy
 
     @cached_property
     def _loses_energy(self) -> bool:

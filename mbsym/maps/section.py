@@ -82,7 +82,7 @@ class Section:
             return ()
         if count > MOST_TRIED:
             return gens
-        laws = {signs: self.law(signs) for signs in product((-1, 0, 1), repeat=count)}
+        laws = {signs: self.law.shown(signs) for signs in product((-1, 0, 1), repeat=count)}
         return tuple(
             gens[k]
             for k in range(count)
@@ -99,7 +99,7 @@ class Section:
 
     def judged(self, signs: Sequence[int]) -> tuple[tuple[LinearSystem, ...], bool]:
         """(parts, one energy) where the coordinates of a point have these signs."""
-        bounded, of_one = self.law(tuple(signs[: len(self.axes)]))
+        bounded, of_one = self.law.shown(tuple(signs[: len(self.axes)]))
         if bounded == self.one_energy and all(part.of_one == of_one for part in self.parts):
             return self.parts, self.one_energy
         return tuple(replace(part, conservative=bounded, of_one=of_one) for part in self.parts), bounded
@@ -120,7 +120,11 @@ class Law:
         self.settled = self.everywhere and (there.conserves or not self._of_one or Fact.ENERGY_VARIES in self._of_one)
         self._found: dict[tuple[int, ...], tuple[bool, frozenset[Fact]]] = {}
 
-    def __call__(self, signs: tuple[int, ...]) -> tuple[bool, frozenset[Fact]]:
+    def __call__(self, signs: tuple[int, ...]) -> bool:
+        return self.shown(signs)[0]
+
+    def shown(self, signs: tuple[int, ...]) -> tuple[bool, frozenset[Fact]]:
+        """(whether it does not grow, what else is shown of it)."""
         if self.settled:
             return True, self._of_one
         if signs not in self._found:
