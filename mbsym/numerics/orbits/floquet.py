@@ -374,6 +374,7 @@ def _harmonics(code: Code, node: Node) -> _Harmonics | None:
         total: _Harmonics | None = None
         match operation, terms, forms:
             case "constant", _, _:
+                assert isinstance(payload, Fraction)
                 total, form = {(zero, zero): (payload, zero)}, (zero, payload)
             case "input", _, _ if payload == "t":
                 form = Fraction(1), zero

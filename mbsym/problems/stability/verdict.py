@@ -307,8 +307,8 @@ def by_extremum(
     ``of_one``: what is shown of a system of one coordinate, instead.
     """
     if of_one:
-        facts = {Extremum.MINIMUM: {Fact.MINIMUM_OF_HIGHER_ORDER}, Extremum.NONE: {Fact.NO_MINIMUM_IN_LOWEST_FORM}}
-        shown = {*of_one, *facts.get(extremum, ())}
+        found = {Extremum.MINIMUM: {Fact.MINIMUM_OF_HIGHER_ORDER}, Extremum.NONE: {Fact.NO_MINIMUM_IN_LOWEST_FORM}}
+        shown = {*of_one, *found.get(extremum, ())}
         theorems = applying(shown)
         carried = theorems.get(None) or theorems.get(Ground.DECAYS) or theorems.get(Ground.ENERGY)
         if carried is None:
