@@ -16,7 +16,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, Number, Operation, children, names, number, walk
@@ -160,12 +160,9 @@ def first_approximation(analysis: Analysis) -> Linearisation:
 
         return given.first_approximation(analysis)
     if analysis.equilibrium.impossible:
-        conditions = (Message("$[[left]] = 0$", left=item) for item in analysis.equilibrium.impossible)
-        never = joined(conditions, ", ")
-        reason = Message("the given motion does not exist: [[never]] is impossible", never=never)
         near = _motion_beside(analysis)
         hint = "" if near is None else Message("with $[[name]] = [[value]]$ it does", name=near[0], value=near[1])
-        raise Unavailable("motion", NoResult(reason, hint, "no such motion", "impossible-motion"))
+        raise Unavailable("motion", NoResult(analysis.equilibrium.why_not, hint, "no such motion", "impossible-motion"))
     if analysis.equilibrium.unsteady:
         varying = ", ".join(analysis.equilibrium.unsteady)
         reason = Message("on the given motion the equations, in symbols, still vary with [[varying]]", varying=varying)

@@ -345,7 +345,7 @@ def _motion(analysis: Analysis) -> Mapping[Any, Any] | str:
         if not analysis.system.speeds:
             scene, equilibrium = analysis.parameters_scene, analysis.equilibrium
             if equilibrium.impossible:
-                return Message("the given motion does not exist")
+                return equilibrium.why_not
             return unperturbed_with(scene, equilibrium.determined(scene))
         first_order = analysis.first_order
     except Unavailable as unavailable:

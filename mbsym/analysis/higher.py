@@ -26,7 +26,7 @@ from mbsym.model.substitution import on_one_side
 from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting
-from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
+from mbsym.problems.stability.words import Because, Fact, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial, Ring
@@ -164,7 +164,8 @@ class FirstTerm:
     """A term of V(x) of a system of one coordinate, ``coefficient`` x^``order``, on a border: those before vanish.
 
     ``damped`` by a term of first order, x' = -V'(x)/d on the centre manifold, else the energy decides; ``conserved``:
-    it does not fall; ``leaf``: velocity constraints keep relations, and what decays there is stable.
+    it does not fall; ``leaf``: velocity constraints keep relations, and what decays there is stable.  ``of_one``: what
+    is shown where there are no other coordinates.
     """
 
     order: int
@@ -172,6 +173,7 @@ class FirstTerm:
     damped: bool
     conserved: bool
     leaf: bool
+    of_one: frozenset[Fact]
 
     def verdict(self, sign: str) -> Verdict | None:
         """The verdict where the coefficient has this sign; None where that does not decide."""
@@ -184,7 +186,7 @@ class FirstTerm:
     def by(self, extremum: Extremum) -> Verdict | None:
         """The verdict by what V has there."""
         if not self.damped or extremum is Extremum.OPEN:
-            return by_extremum(self.order, extremum, self.conserved)
+            return by_extremum(self.order, extremum, self.conserved, of_one=self.of_one)
         decaying = Word.STABLE if self.leaf else Word.ASYMPTOTIC
         word = decaying if extremum is Extremum.MINIMUM else Word.UNSTABLE
         return Verdict(word, (HigherOrder.REDUCTION.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
@@ -193,8 +195,8 @@ class FirstTerm:
 def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial], str]) -> Iterator[FirstTerm]:
     """The terms that ``sign`` does not call zero, in order, to the first that cannot vanish.
 
-    None of several coordinates, where K does not vanish, or where the energy may grow.  ``balance`` is that at the
-    values ``sign`` is about.
+    None of several coordinates, where K does not vanish, or where the energy may both grow and fall.  ``balance`` is
+    that at the values ``sign`` is about.
     """
     if not installed("mbsym.problems.normal_forms"):
         return
@@ -203,7 +205,8 @@ def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial
     scene = analysis.parameters_scene
     try:
         damping = analysis.autonomous.D.polynomials
-        if len(damping) != 1 or not balance.law.bounded:
+        of_one = stability.of_one_energy(balance)
+        if len(damping) != 1 or not (balance.law.bounded or of_one):
             return
         manifold = on_manifold(analysis) if analysis.system.constraints else None
         damped, leaf = sign(damping[0][0]) == "positive", on_a_leaf(analysis)
@@ -213,7 +216,7 @@ def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial
             above, below = scene.ring.fraction(coefficient)
             for factor, exponent in below:
                 above = scene.ring.times(above, scene.ring.power(factor, exponent))
-            yield FirstTerm(order, scene.ring.reduce(above), damped, balance.conserves, leaf)
+            yield FirstTerm(order, scene.ring.reduce(above), damped, balance.conserves, leaf, of_one)
             if sign(coefficient) in ("positive", "negative", "nonzero"):
                 return
     except (Failure, *NOT_THERE):
@@ -233,7 +236,8 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str,
     sign = for_all if values is None else _sign_at(scene.ring, values)
     if scene.ring.kinked:
         return _of_two_sides(analysis, values) or verdict
-    term = next(first_terms(analysis, balance if values is None else balance.at(values), sign), None)
+    balance = balance if values is None else balance.at(values)
+    term = next(first_terms(analysis, balance, sign), None)
     if term is None:
         return verdict
     known = sign(term.coefficient)
@@ -406,20 +410,6 @@ def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
     cyclic = [name for name in free if name in energies.cyclic]
     held = {name for x in applied.values() for name in ring.dependencies(x, cyclic)}
     return conservative, frozenset(cyclic) - held
-
-
-def forces_bend(analysis: Analysis) -> bool:
-    """Whether applied forces have terms of higher order in q, q': dissipation may begin with one."""
-    ring, names = analysis.ring, analysis.system.coordinates
-
-    def slopes(x: Polynomial) -> Iterator[Polynomial]:
-        return (take(x, name) for take in (ring.derivative, ring.velocity_derivative) for name in names)
-
-    try:
-        applied = generalized_forces(analysis.held_scene).values()
-        return any(not ring.vanishes(bend) for x in applied for slope in slopes(x) for bend in slopes(slope))
-    except Failure:  # forces that jump have no such terms
-        return False
 
 
 #: What problem 6 and problem 11 cannot both say of one motion.

@@ -35,13 +35,14 @@ from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.rest import Value, at_numbers, given_values, missing_values, rational_values
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest, displaced
 from mbsym.model.system import System
 from mbsym.problems.equations import separate
 from mbsym.problems.stability.problem import ExactVerdicts, stability
-from mbsym.problems.stability.verdict import Flaw, Verdict, off_the_leaf, undecided, weakest
+from mbsym.problems.stability.verdict import Flaw, Verdict, here, off_the_leaf, undecided, weakest
 from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
@@ -111,7 +112,8 @@ class Judge:
 
     @cached_property
     def _may_lose_energy(self) -> bool:
-        return higher.forces_bend(self.analysis) and self._loses_energy
+        balance = self.analysis.balance
+        return not (balance.conserves or balance.exactly_linear) and self._loses_energy
 
     @cached_property
     def _loses_energy(self) -> bool:
@@ -135,7 +137,27 @@ class Judge:
             further_verdict = None if exact is None else exact({})
             if further_verdict is not None and not further_verdict.word.open:
                 return further_verdict
+        elif whole.word.open and self.may_add(whole) and self._has_cyclic_ones_at(values):
+            exact = self._at(values)
+            further_verdict = whole if exact is None else exact({})
+            return whole if further_verdict.word.open else here(further_verdict)
         return whole
+
+    def _has_cyclic_ones_at(self, values: Mapping[str, Fraction]) -> bool:
+        """Whether coordinates are ignorable at these values that are not so for all: momenta are constant there."""
+        of, ring = self.analysis, self.analysis.ring
+        energies = None if of.system.constraints else of.optional("energy")
+        if energies is None:
+            return False
+        try:
+            numbers = dict(ring.given(values))
+            lagrangian = energies.kinetic_energy.polynomial + energies.force_function.polynomial
+            parts = [lagrangian, *generalized_forces(of.held_scene).values()]
+            there = [ring.reduce(ring.substitute(x, numbers)) for x in parts]
+            others = [name for name in of.system.coordinates if name not in of.balance.ignorable]
+            return any(not any(ring.depends_on(x, name) for x in there) for name in others)
+        except (Failure, *NOT_THERE):
+            return False
 
     def at(self, values: Mapping[str, Value], first: Verdict) -> Verdict:
         """``decided`` at values that may be expressions of exact irrational numbers."""

@@ -23,7 +23,7 @@ from mbsym.problems.claims.counterexample import Trials
 from mbsym.problems.stability.verdict import Verdict, weakest
 
 if TYPE_CHECKING:
-    from mbsym.algebra.ring import Polynomial
+    from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.analysis.expanding import Expansion
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.pipeline import Analysis
@@ -142,8 +142,20 @@ def _where_zero(analysis: Analysis, p: Polynomial) -> Verdict | None:
             return None
         parameters = tuple(item for item in system.parameters if item.name != name)
         there = put(replace(system, parameters=parameters, claims=()), {name: divide(rest, below)})
-        try:
-            return type(analysis)(there, (), analysis.terms, suggests=False).stability.verdict
-        except (Failure, *NOT_THERE):
-            return None
+        return _charged(ring, type(analysis)(there, (), analysis.terms, suggests=False))
     return None
+
+
+def _charged(ring: Ring, other: Analysis) -> Verdict | None:
+    """The verdict on another description, its ring's work charged to the claim that asks; None where there is none."""
+    try:
+        its = other.ring
+    except (Failure, *NOT_THERE):
+        return None
+    with its.budget(ring.work_budget - ring.work) as spent:
+        try:
+            verdict: Verdict | None = other.stability.verdict
+        except (Failure, *NOT_THERE):
+            verdict = None
+    ring.spend(spent.work)
+    return verdict

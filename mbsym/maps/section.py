@@ -36,7 +36,8 @@ from mbsym.model.system import System, rational
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.stability.constant import Constant, constant_of, context_of
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.problem import Prepared, prepared_parts
+from mbsym.problems.stability.problem import Prepared, of_one_energy, prepared_parts
+from mbsym.problems.stability.words import Fact
 
 if TYPE_CHECKING:
     from mbsym.problems.dissipation import Balance
@@ -77,11 +78,11 @@ class Section:
         """The axes themselves, where what is known of the energy is different for their signs."""
         count = len(self.axes)
         gens = tuple(self.context.gens()[:count])
-        if self.one_energy:
+        if self.law.settled:
             return ()
         if count > MOST_TRIED:
             return gens
-        laws = {signs: self.law(signs) for signs in product((-1, 0, 1), repeat=count)}
+        laws = {signs: self.law.shown(signs) for signs in product((-1, 0, 1), repeat=count)}
         return tuple(
             gens[k]
             for k in range(count)
@@ -98,32 +99,39 @@ class Section:
 
     def judged(self, signs: Sequence[int]) -> tuple[tuple[LinearSystem, ...], bool]:
         """(parts, one energy) where the coordinates of a point have these signs."""
-        bounded = self.law(tuple(signs[: len(self.axes)]))
-        if bounded == self.one_energy:
+        bounded, of_one = self.law.shown(tuple(signs[: len(self.axes)]))
+        if bounded == self.one_energy and all(part.of_one == of_one for part in self.parts):
             return self.parts, self.one_energy
-        return tuple(replace(part, conservative=bounded) for part in self.parts), bounded
+        return tuple(replace(part, conservative=bounded, of_one=of_one) for part in self.parts), bounded
 
 
 class Law:
-    """Whether the energy is proved not to grow, by the signs (-1, 0, 1) of the axes at a point.
+    """Whether the energy is proved not to grow, by the signs (-1, 0, 1) of the axes at a point, and what else is shown.
 
-    The proof holds for all points of these signs; without one it is False.
+    The proof holds for all points of these signs; without one it is False.  What else there is, is of one coordinate.
     """
 
     def __init__(self, balance: Balance, axes: Sequence[str], given: Mapping[str, Fraction]) -> None:
         self._balance, self._axes = balance, tuple(axes)
         self._given = dict(given)
-        self.everywhere = balance.at(self._given).law.bounded
-        self._found: dict[tuple[int, ...], bool] = {}
+        there = balance.at(self._given)
+        self.everywhere, self._of_one = there.law.bounded, of_one_energy(there)
+        #: Whether no signs could show more.
+        self.settled = self.everywhere and (there.conserves or not self._of_one or Fact.ENERGY_VARIES in self._of_one)
+        self._found: dict[tuple[int, ...], tuple[bool, frozenset[Fact]]] = {}
 
     def __call__(self, signs: tuple[int, ...]) -> bool:
-        if self.everywhere:
-            return True
+        return self.shown(signs)[0]
+
+    def shown(self, signs: tuple[int, ...]) -> tuple[bool, frozenset[Fact]]:
+        """(whether it does not grow, what else is shown of it)."""
+        if self.settled:
+            return True, self._of_one
         if signs not in self._found:
             self._found[signs] = self._prove(signs)
         return self._found[signs]
 
-    def _prove(self, signs: Sequence[int]) -> bool:
+    def _prove(self, signs: Sequence[int]) -> tuple[bool, frozenset[Fact]]:
         ring = self._balance.scene.ring
         zeros = {name: Fraction(0) for name, sign in zip(self._axes, signs, strict=True) if sign == 0}
         known = {name: x for name, x in zeros.items() if name in self._balance.scene.system.parameter_names}
@@ -134,9 +142,10 @@ class Law:
         ]
         try:
             there = self._balance.at(self._given | known)
-            return replace(there, signs=self._balance.signs.assuming(assumptions)).law.bounded
+            there = replace(there, signs=self._balance.signs.assuming(assumptions))
+            return there.law.bounded, of_one_energy(there)
         except ValueError:  # no parameters have these signs
-            return False
+            return False, frozenset()
 
 
 def usable(system: System) -> tuple[str, ...]:

@@ -53,6 +53,7 @@ from mbsym.maps.result import Cell, Joined, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis, Law, Section, section
 from mbsym.maps.soft_borders import SoftBorders
 from mbsym.problems.stability.constant import Constant, context_of
+from mbsym.problems.stability.words import Fact
 
 #: Slices take seconds each: with more critical values than this none is begun.
 MOST_LEVELS = 120
@@ -260,10 +261,10 @@ class _Fixed(Law):
 
     def __init__(self, law: Law, sign: int) -> None:
         self._law, self._sign = law, sign
-        self.everywhere = law.everywhere
+        self.everywhere, self.settled = law.everywhere, law.settled
 
-    def __call__(self, signs: tuple[int, ...]) -> bool:
-        return self._law((*signs, self._sign))
+    def shown(self, signs: tuple[int, ...]) -> tuple[bool, frozenset[Fact]]:
+        return self._law.shown((*signs, self._sign))
 
 
 def last_of(cut: Section, z: Any) -> Any:

@@ -85,6 +85,9 @@ class EnergyLaw(Enum):
         return self in (EnergyLaw.CONSERVED, EnergyLaw.NOT_GROWING)
 
 
+#: Generators of which a polynomial vanishes as a function only where all its coefficients do.
+_INDEPENDENT = ("coordinate", "velocity", "sine", "cosine")
+
 #: A formula of more products than this is not judged product by product.
 MOST_PRODUCTS = 64
 
@@ -135,6 +138,30 @@ class Balance:
             return _together([self._formulas(), *(self._pair(x) for x in self._others)])
         except Failure:
             return EnergyLaw.UNKNOWN
+
+    @cached_property
+    def varies(self) -> bool:
+        """Whether the energy of a system of one coordinate, which never grows or never falls, is constant on no orbit.
+
+        P = (Q(q, q') - Q(q, 0)) q' as an analytic function: near a strict minimum of V orbits of constant energy are
+        its level lines, and where P vanished on lines as near as one likes it would vanish on all rays, identically.
+        What vanishes for some parameters is not counted.
+        """
+        scene, ring = self.scene, self.scene.ring
+        names, forces = scene.system.coordinates, self._forces
+        alone = len(names) == 1 and not (scene.system.constraints or turning(scene))
+        if not alone or forces is None or ring.kinked or self.law in (EnergyLaw.CONSERVED, EnergyLaw.UNKNOWN):
+            return False
+        try:
+            (force,) = forces.values()
+            above, _ = ring.fraction(self._put(force - ring.at_rest(force)))
+        except Failure:
+            return False
+        of = (*names, *scene.system.velocities)
+        moving = [k for k in occurring([above]) if ring.dependencies(ring.context.gen(k), of)]
+        if any(ring.generators[k].kind not in _INDEPENDENT for k in moving):
+            return False
+        return any(map(self.signs.never_zero, apart(above, moving).values()))
 
     @cached_property
     def exactly_linear(self) -> bool:

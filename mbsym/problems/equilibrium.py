@@ -35,6 +35,7 @@ from mbsym.algebra.matrices import null_space_of_rationals
 from mbsym.algebra.rationals import exact, fraction
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Column, Formula, Shown, column
@@ -68,6 +69,12 @@ class Equilibrium(Shown):
     def terms(self) -> int:
         """Terms of the residuals."""
         return sum(x.terms for x in self.residuals)
+
+    @property
+    def why_not(self) -> Message:
+        """Why there is no such motion, where a condition is ``impossible``."""
+        conditions = joined((Message("$[[left]] = 0$", left=condition) for condition in self.impossible), ", ")
+        return Message("the given motion does not exist: [[never]] is impossible", never=conditions)
 
     def determined(self, scene: Scene) -> dict[int, Polynomial]:
         """Generator indices of all parameters that others determine where the motion exists, and their values."""

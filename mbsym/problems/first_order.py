@@ -78,7 +78,7 @@ def first_order(
     if form.system.inputs:
         raise NoClosedForm("inputs: x' = A x + B v is derived in coordinates only")
     if at.impossible:
-        raise NoClosedForm("the given motion does not exist")
+        raise NoClosedForm(at.why_not)
     matrix, right, speeds, images = _independent(form, equations, reduced)
     forcing = [x.polynomial for x in right]
     rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}

@@ -244,6 +244,8 @@ def _without_repeats(possible: Iterable[CaseStatement]) -> Iterator[CaseStatemen
     for case in possible:
         every, some = _once(case.all_of), _once(case.any_of)
         some = [x for x in some if x.relation == "!=" or not any(_says(y, x, "!=") for y in some)]
+        if any(_says(x, y) for x in some for y in every):  # one of them holds, then
+            some = []
         strict = [x for x in (*every, *(some if len(some) == 1 else ())) if x.relation in ("<", ">")]
         every = [x for x in every if not any(_follows(x, other) for other in strict)]
         open_ = [x for x in some if not any(_says(x, other) for other in sufficed)]

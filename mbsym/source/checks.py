@@ -507,13 +507,15 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
 
 
 def _check_degrees(system: System, reading: Reading) -> None:
-    """Angles of rotation that are multiples of 15, more than two turns in radians: degrees were meant, most likely."""
+    """Angles of rotation that are multiples of 10 or 15, more than a turn in radians: degrees most likely."""
     angles = (angle for body in system.bodies for _, angle in body.rotation.turns())
     turned = {angle.name for angle in angles if isinstance(angle, Name)}  # of x/R, x is a length
     places = [(x.coordinate, x.position, x.span) for x in system.initial]
     for name, written, span in [*places, *((x.coordinate, x.value, x.span) for x in system.motion)]:
         value = None if written is None else rational(written)
-        if name not in turned or value is None or span is None or not 15 <= abs(value) <= 360 or value % 15:
+        if name not in turned or value is None or span is None or not 10 <= abs(value) <= 360:
+            continue
+        if value % 10 and value % 15:
             continue
         share = Fraction(abs(value), 180)
         half_turns = multiply(number(share.numerator), Name("pi"))

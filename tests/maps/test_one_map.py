@@ -186,10 +186,26 @@ motion: {x: 0}
 DECIDED: dict[str, tuple[Axis, dict[str, Fraction], set[Word]]] = {
     # x^4/4 is the energy at p = 0, a minimum
     "-p*x - x**3 + 0*s": (P, {"s": Fraction(0)}, {Word.STABLE}),
-    # r' = -3 s r^3/8 for all s > 0; at s = 0 it is exactly a pair of roots, and s < 0 is outside of the interval
-    "-x - s*x_dot**3 + 0*p": (axis("s", 1, 2), {"p": Fraction(0)}, {Word.ASYMPTOTIC}),
-    "-x + s*x_dot**3 + 0*p": (axis("s", 1, 2), {"p": Fraction(0)}, {Word.UNSTABLE}),
+    # r' = (1 - 3) s r^3/8 for all s > 0, though the energy both falls and grows; s < 0 is outside of the interval
+    "-x + s*x**2*x_dot - s*x_dot**3 + 0*p": (axis("s", 1, 2), {"p": Fraction(0)}, {Word.ASYMPTOTIC}),
+    "-x - s*x**2*x_dot + s*x_dot**3 + 0*p": (axis("s", 1, 2), {"p": Fraction(0)}, {Word.UNSTABLE}),
 }
+
+
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        # E' = -s x'^4 and s x'^4: asymptotic for s > 0 and unstable for s < 0, or the other way round; E' = 0 at s = 0
+        ("-x - s*x_dot**3 + 0*p", [Word.UNSTABLE, Word.STABLE, Word.ASYMPTOTIC]),
+        ("-x + s*x_dot**3 + 0*p", [Word.ASYMPTOTIC, Word.STABLE, Word.UNSTABLE]),
+        # the energy both falls and grows: open on the cells
+        ("-x + s*x**2*x_dot - s*x_dot**3 + 0*p", [Word.CRITICAL, Word.STABLE, Word.CRITICAL]),
+    ],
+)
+def test_an_energy_that_varies_decides_whole_cells(force: str, words: list[Word]) -> None:
+    found = exact_map(mbsym.loads(OSCILLATOR.replace("FORCE", force)), [axis("s", -1, 1)], {"p": Fraction(0)})
+    cells = [found.at(Fraction(s)) for s in (Fraction(-1, 2), 0, Fraction(1, 2))]
+    assert [None if cell is None else cell.word for cell in cells] == words
 
 
 @pytest.mark.parametrize("force", DECIDED)

@@ -138,9 +138,7 @@ def test_the_enclosure_contains_the_flow() -> None:
 
 
 def test_nothing_is_said_without_ground() -> None:
-    """On the border itself; x'' = 0.0 x with a cyclic coordinate; a growth of 1e-40 is beyond the balls' reach."""
-    zero = FORCED.replace("FORCE", "-q*cos(2*t)*x_dot")
-    assert verdict(zero) is Word.UNDECIDED  # x' = exp(-q sin(2t)/2) c: multipliers 1 and 1
+    """Coefficients that are constant, not periodic, singular, or jump; a motion that is none."""
     for force, told in (
         ("-a*x", "constant"),
         ("-(a + t*q)*x", "not periodic"),
@@ -151,6 +149,31 @@ def test_nothing_is_said_without_ground() -> None:
     ):
         with pytest.raises(NotPeriodic, match=told):
             verdict(FORCED.replace("FORCE", force))
+
+
+@pytest.mark.parametrize(
+    ("force", "word"),
+    [
+        # x' = c exp(-q sin(2 t)/2) stays near 0, x drifts; with a mean of 1/2 x' decays, with -1/2 it grows
+        ("-q*cos(2*t)*x_dot", Word.STABLE_BUT_CYCLIC),
+        ("-q*cos(2*t)*x_dot - q*sin(2*t)**2*x_dot + q*x_dot/2", Word.STABLE_BUT_CYCLIC),
+        ("-(1/2 + q*cos(2*t))*x_dot", Word.STABLE),
+        ("(1/2 + q*cos(2*t))*x_dot", Word.UNSTABLE),
+        # with x'^3 the rates still decay, and no more is said: of what x comes to rest at nothing is
+        ("-(1/2 + q*cos(2*t))*x_dot - x_dot**3", Word.ASYMPTOTIC_BUT_CYCLIC),
+        ("-q*cos(2*t)*x_dot - x_dot**3", Word.UNDECIDED),
+        # tr J = -q cos(t) has no mean: the product of the multipliers is 1; a mean of 1e-9 is seen, whichever sign
+        ("-x/3 - q*cos(t)*x_dot", Word.STABLE),
+        ("-x/3 - q*cos(t)**2*x_dot + q*(cos(2*t) + 1)/2*x_dot + q*cos(t)*x_dot", Word.STABLE),
+        ("-x/3 - (q*cos(t) + 1e-9)*x_dot", Word.ASYMPTOTICALLY_STABLE),
+        ("-x/3 - (q*cos(t) - 1e-9)*x_dot", Word.UNSTABLE),
+        ("-x/3 - q*cos(t)*x_dot - x**3", Word.STABLE_FIRST_APPROXIMATION),
+        # at x'' + x the first resonance of q cos(2 t) opens: no mean does not make it stable
+        ("-x - q*cos(2*t)*x_dot", Word.UNSTABLE),
+    ],
+)
+def test_friction_without_a_mean(force: str, word: Word) -> None:
+    assert verdict(FORCED.replace("FORCE", force)) is word
 
 
 def test_a_cyclic_coordinate_has_the_multiplier_one_twice() -> None:

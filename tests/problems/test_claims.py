@@ -12,7 +12,9 @@ from conftest import SHIPPED, at_values, compiled_latex, invoked, needs_pdflatex
 
 import mbsym
 from mbsym.algebra import ring
+from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
+from mbsym.analysis.judging import where_zero
 from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.latex.report import render as latex
 from mbsym.report.results_json import results
@@ -318,3 +320,32 @@ def test_many_costly_claims_are_bounded_together(monkeypatch: pytest.MonkeyPatch
     assert outcomes == [Outcome.FAILS] * judged + [Outcome.UNDECIDED] * (60 - judged)
     assert found.ring.work < found.ring.work_budget
     assert str(found.energy.kinetic_energy) == "(m*l**2 + J)*theta_dot**2/2"
+
+
+TURNED = """
+mbsym: 1
+name: on a turning table
+parameters: {k: positive, W: positive, c: positive}
+prescribed: {phi: {rate: W}}
+bodies:
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [phi]}, mass: 0}
+  - {name: p, attached to: table, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+loads:
+  - potential: k*(x**2 + y**2)/2
+  - rayleigh: c*(x_dot**2 + y_dot**2)/2
+motion: {x: 0, y: 0}
+"""
+
+
+def test_what_is_asked_where_a_condition_is_an_equality_is_charged() -> None:
+    """At k = W^2 another description is derived, z'' + 2 i W z' + c z' = 0, with a ring of its own."""
+    found = mbsym.loads(TURNED)
+    whole = found.ring
+    border = whole.generator("parameter", "k") - whole.generator("parameter", "W") ** 2
+    with whole.budget(whole.work_budget) as spent:
+        verdict = where_zero(found, border)
+    assert verdict is not None
+    assert verdict.stable
+    assert spent.work > 1000
+    with pytest.raises(Failure, match="steps of polynomial arithmetic"), whole.budget(spent.work // 2):
+        where_zero(found, border)

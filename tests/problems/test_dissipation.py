@@ -162,7 +162,7 @@ def test_the_same_functions_with_the_other_sign_make_it_asymptotically_stable() 
     assert loaded.stability.numerical is not None
     assert (str(loaded.stability.numerical.word), loaded.stability.numerical.theorem) == (
         "asymptotically stable",
-        "Lyapunov, Pliss: centre manifold",
+        "Barbashin-Krasovskii",
     )
     assert str(at_values(case, a=1).stability.numerical.word) == "asymptotically stable"
 

@@ -368,3 +368,29 @@ def test_what_vanishes_at_irrational_values_is_put_in(value: str, potential: str
     assert found.word is word
     listed = relative_equilibria(system, given_values(system, {}))
     assert next(x for x in listed.equilibria if x.values[:1] == () or x.values[0].value == 0).verdict.word is word
+
+
+COASTS = """
+mbsym: 1
+name: coasts
+parameters: {k: real, c: real}
+bodies:
+  - {name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+loads:
+  - potential: k*y**2/2 + x**2/2 + x**4
+  - generalized force: {y: -c*y_dot**3}
+motion: {x: 0, y: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("c", "word"), [("1", Word.STABLE_BUT_CYCLIC), ("0", Word.STABLE_BUT_CYCLIC), ("-1", Word.UNSTABLE)]
+)
+def test_what_is_cyclic_at_the_values_only_is_judged_as_what_is_so_always(c: str, word: Word) -> None:
+    """At k = 0: y'' = -c y'^3 slows down, coasts, or runs away, beside x'' + x + 4 x^3 = 0."""
+    always = COASTS.replace("k*y**2/2 + ", "").replace("k: real, ", "")
+    found = [
+        mbsym.loads(f"{text}values: {{{values}c: {c}}}\n").stability.numerical
+        for text, values in ((COASTS, "k: 0, "), (always, ""))
+    ]
+    assert [None if verdict is None else verdict.word for verdict in found] == [word, word]

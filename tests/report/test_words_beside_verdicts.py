@@ -18,6 +18,7 @@ from terminal import told
 
 import mbsym
 from mbsym.algebra.failures import Failure
+from mbsym.analysis.expanding import expansion
 from mbsym.problems.stability.words import Because, Reason
 from mbsym.report.content import Display, Phrase, Subheading
 from mbsym.report.plain_writer import Writer
@@ -134,6 +135,50 @@ def test_what_only_a_symmetry_gives_is_a_further_integral() -> None:
 def test_of_a_motion_that_cannot_be_nothing_else_is_said(stage: str) -> None:
     with pytest.raises(Failure, match="the given motion does not exist: -c\\*v = 0 is impossible"):
         getattr(mbsym.loads(DRAGGED), stage)
+
+
+PULLED = """
+mbsym: 1
+name: pulled
+parameters: {mu: positive, g: positive}
+small parameter: mu
+bodies:
+  - {name: p, mass: mu, connection point: [x, 0, 0], coordinates: [x]SPEEDS}
+loads:
+  - generalized force: {x: "g - x_dot"}
+motion: {x: 0}
+"""
+
+
+def test_why_a_motion_cannot_be_is_one_sentence() -> None:
+    """x = 0 would need g = 0, of first order in speeds and beside an expansion in the small mass, too."""
+    why = "the given motion does not exist: g = 0 is impossible"
+    with pytest.raises(Failure, match=why):
+        mbsym.loads(PULLED.replace("SPEEDS", ", speeds: {u: x_dot}")).first_order  # noqa: B018
+    assert str(expansion(mbsym.loads(PULLED.replace("SPEEDS", "")), 1).missing) == why
+    possible = PULLED.replace("SPEEDS", "").replace("motion: {x: 0}", "motion: {x: {value: 0, rate: g}}")
+    assert "does not exist" not in str(expansion(mbsym.loads(possible), 1).missing)
+
+
+PRESSED = """
+mbsym: 1
+name: pressed
+parameters: {k: real, c: positive}
+ASSUMED
+bodies:
+  - {name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}
+loads:
+  - potential: k*x**2/2
+  - rayleigh: c*x_dot**2/2
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize(("assumed", "times"), [("assumptions: [k <= 0]", 1), ("assumptions: [k < 0]", 0)])
+def test_what_is_asked_of_all_is_no_alternative_as_well(assumed: str, times: int) -> None:
+    """x'' + c x' + k x = 0 with k <= 0 is unstable where k != 0, which is one condition."""
+    lines = told(mbsym.loads(PRESSED.replace("ASSUMED", assumed)), 6)
+    assert sum("k != 0" in line for line in lines) == times
 
 
 SPRING = """

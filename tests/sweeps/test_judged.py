@@ -190,8 +190,9 @@ motion: {x: 0}
         ("a", "-x**4/4", "0", ["unstable", "unstable", "stable"]),
         ("a", "x**3", "0", ["unstable", "unstable", "stable"]),
         ("a", "x**4/4", "1", ["unstable", "asymptotically stable", "asymptotically stable"]),
-        # x'' - a x' + x + x^2 x' = 0: a focus at a = 0, by x^2 x'; then the energy grows
-        ("1", "0", "-a + x**2", ["asymptotically stable", "stable", "unstable"]),
+        # x'' - a x' + x + x^2 x' = 0: a focus at a = 0, by x^2 x', as E' = -x^2 x'^2; then the energy grows
+        ("1", "0", "-a + x**2", ["asymptotically stable", "asymptotically stable", "unstable"]),
+        ("1", "0", "-a - x**2", ["asymptotically stable", "unstable", "unstable"]),
     ],
 )
 def test_on_borders_terms_of_higher_order_decide(linear: str, further: str, damping: str, wanted: list[str]) -> None:

@@ -69,8 +69,8 @@ LINE = [
     one("damped hill", potential("-x**2/2") + rayleigh("x_dot**2/2"), "unstable", lambda t, x, v: x - v),
     one("pushed spring", SPRING + rayleigh("-x_dot**2/2"), "unstable", lambda t, x, v: -x + v),
     # cubic friction: E' = -x'^4 (LaSalle: asymptotic); turned round it pushes: E' = x'^4
-    one("cubic friction", SPRING + rayleigh("x_dot**4/4"), "asymptotic", lambda t, x, v: -x - v**3, decided=False),
-    one("cubic push", SPRING + rayleigh("-x_dot**4/4"), "unstable, critical", lambda t, x, v: -x + v**3, decided=False),
+    one("cubic friction", SPRING + rayleigh("x_dot**4/4"), "asymptotic", lambda t, x, v: -x - v**3),
+    one("cubic push", SPRING + rayleigh("-x_dot**4/4"), "unstable, critical", lambda t, x, v: -x + v**3),
     one("push alone", rayleigh("-x_dot**4/4"), "unstable, critical", lambda t, x, v: v**3, decided=False),
     # x' is reduced by friction alone, x stays where it comes to rest: stable, not asymptotically
     one("friction alone", rayleigh("x_dot**2/2"), "asymptotic, displaced", lambda t, x, v: -v),
@@ -78,14 +78,33 @@ LINE = [
     one("van der Pol turned", SPRING + force("-(1 - x**2)*x_dot"), "asymptotic", lambda t, x, v: -x - (1 - x**2) * v),
     # E' = -x^2 x'^2: stable, and rest alone stays: asymptotic, beyond the first approximation
     one("van der Pol's border", SPRING + force("-x**2*x_dot"), "asymptotic",
-        lambda t, x, v: -x - x**2 * v, decided=False),
+        lambda t, x, v: -x - x**2 * v),
     one("van der Pol's border, pushed", SPRING + force("x**2*x_dot"), "unstable, critical",
-        lambda t, x, v: -x + x**2 * v, decided=False),
+        lambda t, x, v: -x + x**2 * v),
+    # a flat well: E = x'^2/2 + x^4/4, E' = -x^2 x'^2 or -x'^4, which vanishes along no level of E: asymptotic; turned
+    # round E grows: unstable.  Of a flat hill E falls from below 0, or grows from above it: unstable either way
+    one("flat well, friction away from 0", potential("x**4/4") + force("-x**2*x_dot"), "asymptotic",
+        lambda t, x, v: -(x**3) - x**2 * v),
+    one("flat well, cubic friction", force("-x**3 - x_dot**3"), "asymptotic", lambda t, x, v: -(x**3) - v**3),
+    one("flat well, cubic push", force("-x**3 + x_dot**3"), "unstable, critical", lambda t, x, v: -(x**3) + v**3),
+    one("flat hill, cubic friction", force("x**3 - x_dot**3"), "unstable, critical", lambda t, x, v: x**3 - v**3),
+    one("flat hill, cubic push", force("x**3 + x_dot**3"), "unstable, critical", lambda t, x, v: x**3 + v**3),
+    one("cubic slope, friction away from 0", force("-x**2 - x**2*x_dot"), "unstable, critical",
+        lambda t, x, v: -(x**2) - x**2 * v),
+    # V = 3 (1 - cos x) - 3 x^2/2 + a x^4/4: at a = 1/2 it is x^6/240 + ..., below that a maximum
+    one("flat well of two loads", potential("3*(1 - cos(x))") + force("3*x - a*x**3 - x**2*x_dot"), "asymptotic",
+        lambda t, x, v: -3 * np.sin(x) + 3 * x - x**3 / 2 - x**2 * v, "parameters: {a: real}\nvalues: {a: 1/2}\n"),
+    one("flat hill of two loads", potential("3*(1 - cos(x))") + force("3*x - a*x**3 - x**2*x_dot"),
+        "unstable, critical", lambda t, x, v: -3 * np.sin(x) + 3 * x - 0.4 * x**3 - x**2 * v,
+        "parameters: {a: real}\nvalues: {a: 0.4}\n"),
+    # friction that may vanish: at c = 0 the energy is kept
+    one("no cubic friction", SPRING + rayleigh("c*x_dot**4/4"), "stable", lambda t, x, v: -x,
+        "parameters: {c: nonnegative}\nvalues: {c: 0}\n"),
     # a Hopf border: a = 0 leaves the quartic term alone
     one("subcritical border", SPRING + rayleigh("a*x_dot**2/2 - b*x_dot**4/4"), "unstable, critical",
-        lambda t, x, v: -x + v**3, "parameters: {a: real, b: positive}\nvalues: {a: 0, b: 1}\n", decided=False),
+        lambda t, x, v: -x + v**3, "parameters: {a: real, b: positive}\nvalues: {a: 0, b: 1}\n"),
     one("supercritical border", SPRING + rayleigh("a*x_dot**2/2 + b*x_dot**4/4"), "asymptotic",
-        lambda t, x, v: -x - v**3, "parameters: {a: real, b: positive}\nvalues: {a: 0, b: 1}\n", decided=False),
+        lambda t, x, v: -x - v**3, "parameters: {a: real, b: positive}\nvalues: {a: 0, b: 1}\n"),
     # friction to the right, a push to the left: the energy is no Lyapunov function (the symmetry x, t -> -x, -t makes
     # it a centre all the same, which no theorem of mbsym knows)
     one("friction to the right only", SPRING + rayleigh("x*x_dot**2/2"), "open, critical", lambda t, x, v: -x - x * v),
@@ -210,6 +229,12 @@ PLANES = [
     # the damped direction is coupled to the other one: nothing swings on
     plane("pervasively damped", potential("x**2 + y**2 + x*y") + rayleigh("x_dot**2/2"), "asymptotic",
           lambda t, q, v: -np.array([2 * q[0] + q[1], 2 * q[1] + q[0]]) - np.array([v[0], 0])),
+    # E' = -y'^2: where y rests x^2 is constant, so that all rests, beyond the first approximation; but along y = 0 the
+    # other one swings on
+    plane("damped beside, moved by a square", potential("(x**2 + 4*y**2)/2 + x**2*y") + rayleigh("y_dot**2/2"),
+          "asymptotic", lambda t, q, v: np.array([-q[0] - 2 * q[0] * q[1], -4 * q[1] - q[0] ** 2 - v[1]])),
+    plane("damped beside, moving by a square", potential("(x**2 + 3*y**2)/2 + x*y**2") + rayleigh("y_dot**2/2"),
+          "stable", lambda t, q, v: np.array([-q[0] - q[1] ** 2, -3 * q[1] - 2 * q[0] * q[1] - v[1]])),
     # both directions equal: the combination x = y swings without touching the damper between them
     plane("equal masses, damper between", potential("(x**2 + y**2)/2") + rayleigh("(x_dot - y_dot)**2/2"), "stable",
           lambda t, q, v: -q - np.array([v[0] - v[1], v[1] - v[0]])),

@@ -13,9 +13,12 @@ What follows (Lyapunov 1892; Yakubovich & Starzhinskii, Linear Differential Equa
 a multiplier outside the unit circle: unstable, and so is the motion of the whole equations; all inside: asymptotically
 stable, likewise.  Where the equations follow from a Lagrangian, mu and 1/conj(mu) are multipliers together: a simple
 one whose ball meets the mirror image of no other is on the circle exactly; if all are, the first approximation is
-stable, and the whole equations are a critical case, unless they are linear.  Anything else is undecided.  Coordinates
+stable, and the whole equations are a critical case, unless they are linear: then simple ones on the circle beside
+others inside are stability, too.  Anything else is undecided.  Coordinates
 that nothing couples with others are judged by themselves: equal multipliers of two of them are no resonance, and of
-one coordinate whose J has no trace they are mu and 1/mu.
+one coordinate whose J has a trace without mean they are mu and 1/mu, exp(integral of tr J) being their product; of a
+row whose entry has no mean, and that nothing but itself drives, it is 1.  Coordinates that no equation of motion
+contains are left out where all is open with them: they may drift.
 
 With constraints the flow takes changes that keep them, C y = 0 with C = [df/dq, 0; dg/dq, J], to such.  y has free
 components, and others y_d = -C_d^-1 C_f y_f; of the monodromy matrix M_ff - M_fd C_d^-1 C_f is left, C being periodic.
@@ -30,7 +33,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 from functools import partial
-from itertools import combinations
+from itertools import accumulate, combinations, product
 from math import ceil, gcd, lcm
 from typing import TYPE_CHECKING, Any
 
@@ -82,6 +85,9 @@ class Word(Enum):
     ASYMPTOTICALLY_STABLE = "asymptotically stable"
     #: There are no terms of higher order.
     STABLE = "stable"
+    #: Of what is left without coordinates that no equation of motion contains.
+    ASYMPTOTIC_BUT_CYCLIC = "asymptotically stable but for a drift of cyclic coordinates"
+    STABLE_BUT_CYCLIC = "stable but for a drift of cyclic coordinates"
     STABLE_FIRST_APPROXIMATION = "stable in the first approximation only"
     UNDECIDED = "undecided"
 
@@ -134,7 +140,7 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS, steady: boo
         period = 2 * arb.pi() / ball(frequency)
         monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
         lagrangian = not without_potential(dynamics.system, dynamics.fixed_values) or (
-            dynamics.size == 1 and _traceless(code, (0, 1))
+            dynamics.size == 1 and _without_mean(code, (0, 1))
         )
         names: tuple[str, ...] = (*dynamics.system.coordinates, *dynamics.system.velocities)
         if dynamics.constraints is not None:
@@ -142,8 +148,10 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS, steady: boo
             lagrangian = lagrangian and dynamics.constraints.holonomic == len(dynamics.constraints)
             multipliers, simple = _multipliers(monodromy, lagrangian, lambda _: False)
         else:
-            multipliers, simple = _multipliers(monodromy, lagrangian, partial(_traceless, code))
-    word = _word(multipliers, simple, dynamics.linear)
+            multipliers, simple = _multipliers(monodromy, lagrangian, partial(_without_mean, code))
+        word = _word(multipliers, simple, dynamics.linear)
+        if word is Word.UNDECIDED and dynamics.constraints is None:
+            word = _without_cyclic(dynamics, code, monodromy, lagrangian)
     return Judged(word, period, frequency, names, monodromy, multipliers, simple, lagrangian, rests, steps)
 
 
@@ -198,9 +206,25 @@ def _word(multipliers: Sequence[Multiplier], simple: bool, linear: bool) -> Word
         return Word.UNSTABLE
     if all(multiplier.greatest < 1 for multiplier in multipliers):
         return Word.ASYMPTOTICALLY_STABLE
-    if simple and all(multiplier.on_circle for multiplier in multipliers):
+    staying = all(multiplier.on_circle or (linear and multiplier.greatest < 1) for multiplier in multipliers)
+    if simple and staying:
         return Word.STABLE if linear else Word.STABLE_FIRST_APPROXIMATION
     return Word.UNDECIDED
+
+
+def _without_cyclic(dynamics: Dynamics, code: Code, monodromy: arb_mat, lagrangian: bool) -> Word:
+    """The word without the coordinates that no equation of motion contains; undecided where all of them are."""
+    rhs, n = dynamics.right_hand_side, dynamics.size
+    live = {*rhs.program.live(rhs.outputs[n:])}
+    cyclic = {i for i, name in enumerate(dynamics.system.coordinates) if rhs.program.input(name).number not in live}
+    left = [k for k in range(2 * n) if k not in cyclic]
+    if not cyclic:
+        return Word.UNDECIDED
+    rows = monodromy.tolist()
+    rest = arb_mat([[rows[i][j] for j in left] for i in left])
+    found = _multipliers(rest, lagrangian, lambda part: _without_mean(code, [left[k] for k in part]))
+    words = {Word.ASYMPTOTICALLY_STABLE: Word.ASYMPTOTIC_BUT_CYCLIC, Word.STABLE: Word.STABLE_BUT_CYCLIC}
+    return words.get(_word(*found, dynamics.linear), Word.UNDECIDED)
 
 
 # --- the Jacobian as a program in t ---
@@ -319,13 +343,73 @@ def _require_no_time(there: bool) -> None:
         raise NotPeriodic("its coefficients are not periodic: the time is in them otherwise than in sines and cosines")
 
 
-def _traceless(code: Code, part: Sequence[int]) -> bool:
-    """Whether the trace of that part of J vanishes as a program."""
+def _without_mean(code: Code, part: Sequence[int]) -> bool:
+    """Whether the trace of that part of J is known to have the mean zero over a period."""
     size = round(len(code.outputs) ** 0.5)
     total: Node = code.program.zero
     for place in part:
         total = total + code.outputs[place * (size + 1)]
-    return code.program.vanishes(total)
+    terms = _harmonics(code, total)
+    return terms is not None and not any(any(value) for (rate, _), value in terms.items() if not rate)
+
+
+#: Numbers re + i im, by a and b of the harmonics exp(i (a t + b)) before which they stand.
+_Harmonics = dict[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
+
+#: Sums of more harmonics are not formed.
+MOST_HARMONICS = 200
+
+
+def _harmonics(code: Code, node: Node) -> _Harmonics | None:
+    """A program's value as a sum of harmonics of the time, exactly; None where it is none, or a long one."""
+    zero, half = Fraction(0), Fraction(1, 2)
+    program = code.program
+    sums: dict[int, _Harmonics | None] = {}
+    linear: dict[int, tuple[Fraction, Fraction] | None] = {}
+    for number in program.live((node,)):
+        operation, operands, payload = program.instructions[number]
+        terms = [sums[operand] for operand in operands]
+        forms = [linear[operand] for operand in operands]
+        form: tuple[Fraction, Fraction] | None = None
+        total: _Harmonics | None = None
+        match operation, terms, forms:
+            case "constant", _, _:
+                assert isinstance(payload, Fraction)
+                total, form = {(zero, zero): (payload, zero)}, (zero, payload)
+            case "input", _, _ if payload == "t":
+                form = Fraction(1), zero
+            case "negative", [a], [f]:
+                total = None if a is None else {key: (-x, -y) for key, (x, y) in a.items()}
+                form = None if f is None else (-f[0], -f[1])
+            case (("add" | "subtract"), [a, b], [f, g]):
+                sign = 1 if operation == "add" else -1
+                if a is not None and b is not None:
+                    total = dict(a)
+                    for key, (x, y) in b.items():
+                        before = total.get(key, (zero, zero))
+                        total[key] = before[0] + sign * x, before[1] + sign * y
+                if f is not None and g is not None:
+                    form = f[0] + sign * g[0], f[1] + sign * g[1]
+            case "multiply", [a, b], [f, g]:
+                if a is not None and b is not None:
+                    total = {}
+                    for ((rate, shift), (x, y)), ((other, more), (u, v)) in product(a.items(), b.items()):
+                        key = rate + other, shift + more
+                        before = total.get(key, (zero, zero))
+                        total[key] = before[0] + x * u - y * v, before[1] + x * v + y * u
+                if f is not None and g is not None and not (f[0] and g[0]):
+                    form = f[0] * g[1] + f[1] * g[0], f[1] * g[1]
+            case (("sin" | "cos"), _, [(rate, shift)]):
+                parts = ((half, zero), (half, zero)) if operation == "cos" else ((zero, -half), (zero, half))
+                total = {}
+                for key, (x, y) in zip(((rate, shift), (-rate, -shift)), parts, strict=True):
+                    before = total.get(key, (zero, zero))
+                    total[key] = before[0] + x, before[1] + y
+            case _:
+                pass
+        sums[number] = total if total is None or len(total) <= MOST_HARMONICS else None
+        linear[number] = form
+    return sums[node.number]
 
 
 # --- series in balls ---
@@ -512,12 +596,19 @@ def _multipliers(
     every = [ball for own in balls for ball in own]
     multipliers: list[Multiplier] = []
     for part, own in zip(parts, balls, strict=True):
-        mirrored = len(part) == 2 and keeps_area(part)
+        mirrored, fixed = len(part) == 2 and keeps_area(part), _fixed(monodromy, part, keeps_area)
         for place, root in enumerate(own):
-            size, alone = abs(root), mirrored and _alone(own, place)
+            size, alone = abs(root), (mirrored and _alone(own, place)) or place in fixed
             on_circle = size == 1 or alone or (lagrangian and _alone(every, len(multipliers)))
             multipliers.append(Multiplier(root, float(size.lower()), float(size.upper()), on_circle))
     return tuple(sorted(multipliers, key=lambda multiplier: -multiplier.greatest)), simple
+
+
+def _fixed(monodromy: arb_mat, part: Sequence[int], keeps_area: Callable[[Sequence[int]], bool]) -> set[int]:
+    """Places, among the multipliers of a part, of those that are 1 exactly: of single rows whose entry has no mean."""
+    members = [group for group in _parts(monodromy, "strong") if group[0] in part]
+    places = accumulate((len(group) for group in members), initial=0)
+    return {place for place, group in zip(places, members, strict=False) if len(group) == 1 and keeps_area(group)}
 
 
 def _parts(matrix: arb_mat, connection: str) -> list[list[int]]:

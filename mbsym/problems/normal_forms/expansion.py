@@ -115,14 +115,20 @@ def expansion(
 
 
 def potential(expanded: Expansion) -> Terms | None:
-    """The terms of V in L = T - V, by places of coordinates; None where applied forces are static, too.
+    """The terms of V in L = T - V, by places of coordinates; None where applied forces of several are static, too.
 
-    The energy that is conserved, or dissipated, is T_2 + V then, whatever L has besides.
+    The energy that is conserved, or dissipated, is T_2 + V then, whatever L has besides; of one coordinate with what
+    is static in its force, V - int Q(x, 0) dx.
     """
     n = len(expanded.coordinates)
-    if any(max(key) < n for parts in expanded.forces for part in parts for key in part):
-        return None
-    return {key: -value for part in expanded.lagrangian for key, value in part.items() if max(key) < n}
+    energy = {key: -value for part in expanded.lagrangian for key, value in part.items() if max(key) < n}
+    for key, value in ((key, x) for parts in expanded.forces for part in parts for key, x in part.items()):
+        if max(key) < n:
+            if n > 1:
+                return None
+            above = (*key, 0)
+            energy[above] = (energy[above] if above in energy else value * 0) - value / len(above)
+    return energy
 
 
 class Numbers:

@@ -60,6 +60,7 @@ from mbsym.problems.stability.problem import (
     Stability,
     SubsystemStability,
     because,
+    of_one_energy,
     parameter_values,
     stability,
     with_verdict,

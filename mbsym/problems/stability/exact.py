@@ -38,7 +38,7 @@ from mbsym.problems.stability.verdict import (
     only_drifts,
     undecided,
 )
-from mbsym.problems.stability.words import Because, Fact, Ground, Reason, Word, implied
+from mbsym.problems.stability.words import Because, Fact, Ground, Reason, Word, applying, implied
 
 # Exactly linear equations: x' = A x is decided by A alone, at any numbers.
 #
@@ -225,7 +225,7 @@ def _of_linear_equations(system: LinearSystem, at: ExactPoint, first_verdict: Ve
     always = evaluated(system.shifts, at).tolist() if system.shifts else []
     there = kernel_of(k + n, g).tolist() if system.free else []
     shifts = _independent(type(m), [*always, *there]) if always or there else None
-    facts = frozenset[Fact]() if system.nonholonomic is not None else _facts(m, d, g, k, n, system.conservative)
+    facts = frozenset[Fact]() if system.nonholonomic is not None else _facts(m, d, g, k, n, system)
     verdict = exactly(decided(first_verdict, a, shifts, facts))
     return here(verdict) if shifts is not None and shifts.nrows() > len(always) else verdict
 
@@ -251,7 +251,7 @@ def _settled(system: LinearSystem, at: ExactPoint) -> LinearSystem:
 
 def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots: RootCount) -> Verdict:
     m, d, g, k, n = matrices
-    facts = _facts(m, d, g, k, n, system.conservative)
+    facts = _facts(m, d, g, k, n, system)
     if system.exact:
         facts |= {Fact.EXACTLY_LINEAR}
     if roots.right:
@@ -262,7 +262,7 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
     if roots.left == roots.degree:
         return concluded(facts | {Fact.ROOTS_LEFT})
     if implied(facts) >= {Fact.MASS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE}:
-        if Fact.ENERGY_NEVER_GROWS not in implied(facts):
+        if not {None, Ground.ENERGY} & {*applying(facts)}:
             return bounded(facts, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
         verdict = concluded(facts)
         if Fact.UNDAMPED in facts:
@@ -280,7 +280,7 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
     return bounded(facts, Reason(Because.IMAGINARY), Reason(Because.HIGHER_ORDER))
 
 
-def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> frozenset[Fact]:
+def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, system: LinearSystem) -> frozenset[Fact]:
     """What the matrices show.  Raises ValueError if M, D or K is not symmetric."""
     (_, massless, light), (_, free, negative), (_, undamped, growing) = (inertia(matrix) for matrix in (m, k, d))
     size = m.nrows()
@@ -295,9 +295,9 @@ def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservat
         Fact.DAMPING_POSITIVE: not growing and not undamped,
         Fact.NOT_GYROSCOPIC: _no(g),
         Fact.POTENTIAL: _no(n),
-        Fact.ENERGY_NEVER_GROWS: conservative,
+        Fact.ENERGY_NEVER_GROWS: system.conservative,
     }
-    return frozenset(fact for fact, holds in shown.items() if holds)
+    return system.of_one.union(fact for fact, holds in shown.items() if holds)
 
 
 def observed(a: Numbers, d: Numbers) -> list[list[Any]]:

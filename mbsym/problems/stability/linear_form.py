@@ -44,7 +44,7 @@ class LinearSystem:
     """One subsystem: n x n matrices M, D, G, K, N of polynomials in the parameters.
 
     ``conservative``: the (generalised) energy **of the nonlinear system** does not grow near the motion, in all orders:
-    D does not tell that.
+    D does not tell that.  ``of_one``: what else is shown of it where there is one coordinate.
     ``cyclic``: indices of coordinates that do not occur in the nonlinear equations (only their velocities do); their
     rows and columns in K and N must vanish.  ``driven``: those of them whose momenta are not constant although D and N
     have no entries, because forces of higher order act on them.  ``turned``: (p, q) of the factor p lambda^2 + q, q/p
@@ -76,6 +76,7 @@ class LinearSystem:
     exact: bool = False
     shifts: Matrix = ()
     free: bool = False
+    of_one: frozenset[Fact] = frozenset()
 
     def __post_init__(self) -> None:
         n = len(self.M)
@@ -118,7 +119,7 @@ class LinearSystem:
             if is_zero(matrix)
         ]
         known = [Fact.ENERGY_NEVER_GROWS] if self.conservative else []
-        return frozenset({Fact.MASS_POSITIVE, *zero, *known, *exactness})
+        return frozenset({Fact.MASS_POSITIVE, *zero, *known, *exactness, *self.of_one})
 
     def name(self, i: int) -> str:
         return self.names[i] if self.names else f"coordinate {i + 1}"

@@ -25,13 +25,13 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import dependent, relations
+from mbsym.mechanics.motion import dependent, relations, turning
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import rational
 from mbsym.problems.displacements import Basis, Displacements
 from mbsym.problems.displacements import basis as basis_of
-from mbsym.problems.dissipation import Balance
+from mbsym.problems.dissipation import Balance, EnergyLaw
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
@@ -43,7 +43,7 @@ from mbsym.problems.stability.requirements import Cell, Lift, Requirement, cells
 from mbsym.problems.stability.sentences import named
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
-from mbsym.problems.stability.words import Because, Reason, Word
+from mbsym.problems.stability.words import Because, Fact, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
@@ -368,7 +368,26 @@ class Prepared:
         driven = self.system.driven
         if self.system.basis is None:
             driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
-        return replace(self.exactly(there.exactly_linear), conservative=there.law.bounded, driven=driven)
+        return replace(
+            self.exactly(there.exactly_linear),
+            conservative=there.law.bounded,
+            of_one=of_one_energy(there),
+            driven=driven,
+        )
+
+
+def of_one_energy(balance: Balance) -> frozenset[Fact]:
+    """What the energy of a system of one coordinate does near a rest; nothing of others, or where it is not known."""
+    scene = balance.scene
+    if len(scene.system.coordinates) != 1 or scene.system.constraints or scene.system.speeds or turning(scene):
+        return frozenset()
+    if balance.law.bounded:
+        shown = {Fact.ONE_COORDINATE, Fact.ENERGY_NEVER_GROWS}
+    elif balance.law is EnergyLaw.GROWS:
+        shown = {Fact.ONE_COORDINATE, Fact.ENERGY_NEVER_FALLS}
+    else:
+        return frozenset()
+    return frozenset(shown | ({Fact.ENERGY_VARIES} if balance.varies else set()))
 
 
 def prepared_parts(
@@ -497,6 +516,7 @@ def _prepared(
     system = LinearSystem(
         mass, damping, gyroscopic, stiffness, circulatory, bounded, cyclic, tuple(turned), driven, names, basis=basis
     )
+    system = replace(system, of_one=of_one_energy(balance))
     made = Prepared(part.coordinates, matrices, factor, ring, known, system, scene.system.linear is None)
     return replace(made, system=made.exactly(balance.exactly_linear))
 

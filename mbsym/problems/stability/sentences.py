@@ -119,6 +119,14 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "dissipation is complete."
     ),
     Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order [[1]] decide.",
+    Because.ENERGY_LOST: (
+        "There is one coordinate, of which the (changed) potential energy has a strict minimum, and no motion near it "
+        "but the rest itself keeps the energy, which never grows."
+    ),
+    Because.ENERGY_GAINED: (
+        "There is one coordinate, of which the (changed) potential energy has a strict minimum, and no motion near it "
+        "but the rest itself keeps the energy, which never falls."
+    ),
     Because.NO_FORCES: (
         "The (changed) potential energy is constant, and no gyroscopic forces act: every position is one of rest, and "
         "the smallest velocity leads away from it along a geodesic."

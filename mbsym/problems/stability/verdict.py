@@ -298,11 +298,23 @@ class Extremum(Enum):
     OPEN = "open"
 
 
-def by_extremum(order: int, extremum: Extremum, conserved: bool, complete: bool = False) -> Verdict | None:
+def by_extremum(
+    order: int, extremum: Extremum, conserved: bool, complete: bool = False, of_one: Set[Fact] = frozenset()
+) -> Verdict | None:
     """The verdict by what terms of this order make of V, where the energy does not grow; ``conserved``: nor fall.
 
     ``complete``: D > 0.  Then no motion keeps the energy but rests, of which there is no other near a strict minimum.
+    ``of_one``: what is shown of a system of one coordinate, instead.
     """
+    if of_one:
+        found = {Extremum.MINIMUM: {Fact.MINIMUM_OF_HIGHER_ORDER}, Extremum.NONE: {Fact.NO_MINIMUM_IN_LOWEST_FORM}}
+        shown = {*of_one, *found.get(extremum, ())}
+        theorems = applying(shown)
+        carried = theorems.get(None) or theorems.get(Ground.DECAYS) or theorems.get(Ground.ENERGY)
+        if carried is None:
+            return None
+        orders = (Because.HIGHER_MINIMUM, Because.NO_MINIMUM)
+        return concluded(shown, Reason(carried.because, (order,) if carried.because in orders else ()))
     if extremum is Extremum.MINIMUM:
         facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
         if complete:

@@ -150,6 +150,8 @@ class Because(Enum):
     HIGHER_MINIMUM = auto()  # (order)
     HIGHER_MINIMUM_AND_COMPLETE = auto()  # (order)
     NO_MINIMUM = auto()  # (order)
+    ENERGY_LOST = auto()
+    ENERGY_GAINED = auto()
     NO_FORCES = auto()
     ALONG_RESTS = auto()  # (dimensions)
     FEWER_CONSTRAINTS = auto()
@@ -217,6 +219,8 @@ BEYOND_LINEAR = (
     Because.HIGHER_MINIMUM,
     Because.HIGHER_MINIMUM_AND_COMPLETE,
     Because.NO_MINIMUM,
+    Because.ENERGY_LOST,
+    Because.ENERGY_GAINED,
     Because.ALONG_RESTS,
     Because.FEWER_CONSTRAINTS,
     Because.TERMS_OF_HIGHER_ORDER,
@@ -265,6 +269,10 @@ class Reason:
 #   with the time: a centre where q rests and its roots are imaginary (bodies of revolution that roll on a plane).
 # * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum, or none, where the
 #   converse holds if the energy is constant and no gyroscopic forces act (``bundle``).
+#   Of one coordinate it holds wherever the energy only falls, or only grows: what begins with less, or more, than that
+#   of the rest does not come to it, and around a rest whose index is not 1 no closed orbit in the plane can be.
+# * Barbashin-Krasovskii: of one coordinate, V has a strict minimum and the energy, which never grows, is constant on no
+#   orbit: asymptotically stable.  Where it never falls that is so of time reversed: unstable.
 # * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
 # * Exactly linear equations (a Penning trap, a rotating saddle, whatever is given by its matrices): their solutions are
 #   known.  No root to the right and those on the axis semisimple, zero ones too: stable; a Jordan block on the axis:
@@ -308,6 +316,10 @@ class Fact(Enum):
     NO_OTHER_FORCES = "gyroscopic forces are not there, or V is a function of one coordinate alone"
     POTENTIAL_CONSTANT = "V is the same at every position"
     ENERGY_CONSERVED = "the energy of the nonlinear system is constant"
+    #: Of one coordinate, which turns nowhere.
+    ONE_COORDINATE = "there is one coordinate"
+    ENERGY_NEVER_FALLS = "the energy of the nonlinear system does not fall"
+    ENERGY_VARIES = "the energy of the nonlinear system is constant on no orbit near the motion"
     MINIMUM_ACROSS_RESTS = "V has a strict minimum across a manifold of rests"
     #: A combination of integrals of the nonlinear system is stationary, its second variation definite where they keep
     #: their values (``bundle``): shown of the whole system, never of a subsystem.
@@ -369,6 +381,7 @@ LYAPUNOV = "Lyapunov's first method"
 MALKIN = "Lyapunov-Malkin"
 CHAPLYGIN = "Routh, by Chaplygin's integrals"
 CHETAEV = "Chetaev's combination of integrals"
+BARBASHIN = "Barbashin-Krasovskii"
 CONVERSE = "converse of Lagrange-Dirichlet"
 GEODESICS = "motion along geodesics"
 LINEAR = "theory of linear equations"
@@ -415,6 +428,18 @@ THEOREMS = (
     ),
     _theorem(
         CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED
+    ),
+    *(
+        _theorem(CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.ONE_COORDINATE, law)
+        for law in (Fact.ENERGY_NEVER_GROWS, Fact.ENERGY_NEVER_FALLS)
+    ),
+    *(
+        _theorem(BARBASHIN, gives, because, Fact.ONE_COORDINATE, Fact.ENERGY_VARIES, law, *minimum)
+        for gives, because, law in (
+            (Ground.DECAYS, Because.ENERGY_LOST, Fact.ENERGY_NEVER_GROWS),
+            (None, Because.ENERGY_GAINED, Fact.ENERGY_NEVER_FALLS),
+        )
+        for minimum in ((Fact.MINIMUM_OF_HIGHER_ORDER,), (*_PLAIN, Fact.STIFFNESS_POSITIVE))
     ),
     # A small ball is left by every geodesic through it (Whitehead), at the constant rate sqrt(2 T).
     _theorem(GEODESICS, None, Because.NO_FORCES, Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED),

@@ -105,8 +105,16 @@ _SAID = {
     Word.UNSTABLE: Message("unstable: a multiplier is outside the unit circle (Lyapunov)"),
     Word.ASYMPTOTICALLY_STABLE: Message("asymptotically stable: all multipliers are inside the unit circle (Lyapunov)"),
     Word.STABLE: Message(
-        "stable: the equations are linear and follow from a Lagrangian, and the multipliers are on the unit circle and "
-        "simple (coordinates that are not coupled may have equal ones)"
+        "stable: the equations are linear, and every multiplier is inside the unit circle or a simple one on it "
+        "(coordinates that are not coupled may have equal ones)"
+    ),
+    Word.ASYMPTOTIC_BUT_CYCLIC: Message(
+        "asymptotically stable but for a drift of cyclic coordinates: no equation of motion contains them, and all "
+        "other multipliers are inside the unit circle (Lyapunov)"
+    ),
+    Word.STABLE_BUT_CYCLIC: Message(
+        "stable but for a drift of cyclic coordinates: no equation of motion contains them, the equations are linear, "
+        "and every other multiplier is inside the unit circle or a simple one on it"
     ),
     Word.STABLE_FIRST_APPROXIMATION: Message(
         "the first approximation is stable: the equations follow from a Lagrangian, and the multipliers are on the "

@@ -82,7 +82,9 @@ def test_three_coordinates_need_what_lies_across_the_null_direction() -> None:
 def test_friction_keeps_a_minimum_and_forbids_to_speak_of_the_converse() -> None:
     assert verdict("x**4", more="  - damper: {coordinate: x, coefficient: 1}\n").word in (Word.STABLE, Word.ASYMPTOTIC)
     assert verdict("x**4", more="  - rayleigh: -x_dot**2/2\n").word is Word.UNSTABLE
-    assert verdict("x**4", more="  - rayleigh: -x_dot**4/4\n").word is Word.UNDECIDED, "driven"
+    driven = "  - rayleigh: -x_dot**4/4\n"
+    assert verdict("x**4 + y**4 + x**3*y + x*y**3", "x, y", more=driven).word is Word.UNDECIDED
+    assert verdict("x**4", more=driven).word is Word.UNSTABLE  # one coordinate: it gains energy along every orbit
     # Roots 0 and -1: the converse is not about systems with friction; on the centre manifold x' = 4 x^3 + ...
     driven_away = verdict("-x**4", more="  - damper: {coordinate: x, coefficient: 1}\n")
     assert (driven_away.word, driven_away.theorem) == (Word.UNSTABLE, "Lyapunov, Pliss: centre manifold")
