@@ -102,7 +102,7 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
         variable=variable,
         **verdict_data(part.theory.verdict),
         conditions=[_condition_of(item) for item in listed],
-        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, labels, part.theory.uncovered)],
+        cases=[_case(case, shown) for case in cases(part)],
     )
 
 
@@ -216,7 +216,7 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
         yield paragraph(Said("Conditions"), " (", worded(theory.wanted), "):")
         yield from _conditions(needed, seen)
     first = True
-    for case in cases(part.ring, theory.cases, labels, theory.uncovered):
+    for case in cases(part):
         if case.conditional:
             yield from _case_told(case, first, seen)
             first = False
@@ -272,7 +272,7 @@ def condition_keys(part: SubsystemStability, number: int) -> Iterator[tuple[Stat
     """The conditions of a subsystem that are shown by formulas, each with the key of its own."""
     seen, labels = _Keyed(number), label_meanings(part.ring, part.theory.requirements)
     known = list(statements(part.ring, part.theory.requirements, True, labels))
-    for case in cases(part.ring, part.theory.cases, labels, part.theory.uncovered):
+    for case in cases(part):
         if case.conditional:
             known += [*case.all_of, *case.any_of]
     for item in known:
