@@ -287,4 +287,4 @@ def _words_outside(formula: str) -> str:
 
 def _loosened(text: str) -> str:
     """Inline lists of formulas may be broken after their commas."""
-    return text.replace(",\\; ", ",\\;\\allowbreak ").replace(",\\, ", ",\\,\\allowbreak ")
+    return re.sub(r",(\\[;,]) (?!\\allowbreak)", r",\1\\allowbreak ", text)

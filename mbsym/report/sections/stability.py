@@ -160,13 +160,15 @@ def content(results: Results) -> Iterator[Block]:
             ".",
         )
     if stability.numerical is not None:
+        said = {part.theory.verdict.explanation for part in stability.subsystems if part.theory.verdict.explanation}
+        reason = "" if {stability.numerical.explanation} == said else stability.numerical.explanation
         yield paragraph(
             Said("At the given values of the parameters"),
             worded(decided(stability)),
             ": ",
             *verdict(stability.numerical),
-            ". ",
-            worded(stability.numerical.explanation),
+            ". " if reason else ".",
+            worded(reason),
         )
         for spectrum in stability.spectra:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
