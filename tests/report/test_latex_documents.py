@@ -18,7 +18,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report import conditions
 from mbsym.report.latex.appendix import fragment, joined, render
-from mbsym.report.latex.displays import written_out
+from mbsym.report.latex.displays import display, written_out
 from mbsym.report.latex.labels import labels, prefix_of, slug
 from mbsym.report.targets import TARGETS
 from mbsym.report.whole_run import rendered
@@ -353,3 +353,18 @@ def test_a_theorem_that_is_cited_is_one_that_decides(name: str) -> None:
     theorems = re.findall(r"([^;~]+)~", cited.partition(".")[0])
     assert theorems
     assert [x for x in map(str.strip, theorems) if f"{x})" not in words and f"{x}," not in words] == []
+
+
+def test_a_short_bracket_is_not_broken_while_something_else_can_be() -> None:
+    short = "(2 A - 2 C - J)"
+    terms = " + ".join(rf"\cos^{{2}} \alpha_{{{k}}} \cos \beta" for k in range(8))
+    formula = rf"U = \frac{{1}}{{4}} \nu \bigl[3 {short} ({terms}) + 6 {short} \sin \alpha\bigr]"
+    lines = display(formula, "u").split("\n")
+        "\n"
+    )
+    assert lines[0].startswith(r"\begin{multline}")
+    assert len(lines) > 4
+    assert sum(line.count(short) for line in lines) == 2
+    # What is one short bracket and too wide for nothing else is broken in it after all.
+    names = " + ".join(f"x_{{{k}}}" for k in range(40))
+    assert len(display(f"y = ({names})").split("\n")) > 3

@@ -160,8 +160,9 @@ def content(results: Results) -> Iterator[Block]:
             ".",
         )
     if stability.numerical is not None:
-        said = {part.theory.verdict.explanation for part in stability.subsystems if part.theory.verdict.explanation}
-        reason = "" if {stability.numerical.explanation} == said else stability.numerical.explanation
+        told = {part.theory.verdict.explanation for part in stability.subsystems}
+        again = told == {stability.numerical.explanation} and stability.numerical.word is not Word.UNDECIDED
+        reason = "" if again else stability.numerical.explanation
         yield paragraph(
             Said("At the given values of the parameters"),
             worded(decided(stability)),
