@@ -360,8 +360,6 @@ def test_a_short_bracket_is_not_broken_while_something_else_can_be() -> None:
     terms = " + ".join(rf"\cos^{{2}} \alpha_{{{k}}} \cos \beta" for k in range(8))
     formula = rf"U = \frac{{1}}{{4}} \nu \bigl[3 {short} ({terms}) + 6 {short} \sin \alpha\bigr]"
     lines = display(formula, "u").split("\n")
-        "\n"
-    )
     assert lines[0].startswith(r"\begin{multline}")
     assert len(lines) > 4
     assert sum(line.count(short) for line in lines) == 2
