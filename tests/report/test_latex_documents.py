@@ -356,13 +356,11 @@ def test_a_theorem_that_is_cited_is_one_that_decides(name: str) -> None:
 
 
 def test_a_short_bracket_is_not_broken_while_something_else_can_be() -> None:
-    short = "(2 A - 2 C - J)"
-    terms = " + ".join(rf"\cos^{{2}} \alpha_{{{k}}} \cos \beta" for k in range(8))
-    formula = rf"U = \frac{{1}}{{4}} \nu \bigl[3 {short} ({terms}) + 6 {short} \sin \alpha\bigr]"
-    lines = display(formula, "u").split("\n")
-    assert lines[0].startswith(r"\begin{multline}")
-    assert len(lines) > 4
-    assert sum(line.count(short) for line in lines) == 2
+    first, second = r"4 w_{0} (A - C) - J (2 w_{0} + s)", r"2 w_{0} (B - C) - J (w_{0} + 2 s)"
+    shown = display(rf"v_{{0}} = 2 w_{{0}}^{{2}} \bigl[{first}\bigr] \bigl[{second}\bigr]", "v")
+    assert shown.startswith(r"\begin{multline}")
+    for short in ("(A - C)", "(2 w_{0} + s)", "(B - C)", "(w_{0} + 2 s)"):
+        assert short in shown
     # What is one short bracket and too wide for nothing else is broken in it after all.
     names = " + ".join(f"x_{{{k}}}" for k in range(40))
     assert len(display(f"y = ({names})").split("\n")) > 3
