@@ -235,6 +235,36 @@ def test_conditions_are_the_cases_that_run_tells() -> None:
     ]
 
 
+def test_a_condition_up_to_a_positive_factor_is_told_once(tmp_path: Path) -> None:
+    """A gyrostat in orbit, its rotor along the normal: det K < 0 and v0 < 0 are one condition, v0 = 4 det K.
+
+    K22 = w0 (J (w0 + 2 s) - 2 w0 (B - C))/2, K33 = w0 (J (2 w0 + s) - 4 w0 (A - C)), which nothing couples (Roberson).
+    """
+    text = """
+mbsym: 1
+name: gyrostat
+parameters: {A: positive, B: positive, C: positive, J: positive, w0: positive, s: real, nu: positive, R: positive}
+bodies:
+  - {name: orbit, attached to: 0, rotation: {axes: [3], angles: [w0*t]},
+     connection point: [R*cos(w0*t), R*sin(w0*t), 0], mass: 0}
+  - {name: satellite, attached to: orbit, rotation: {axes: [3, 1, 2], angles: [alpha, beta, gamma]}, mass: 1,
+     inertia: [A, B, C], inertia about: mass centre}
+  - {name: rotor, attached to: satellite, rotation: {axes: [3], angles: [s*t]}, mass: 0, inertia: [J/2, J/2, J],
+     inertia about: mass centre}
+loads: [newtonian gravity: {constant: nu, centre: 0, about: orbit}]
+relations: {nu: w0^2*R^3}
+motion: {alpha: 0, beta: 0, gamma: 0}
+"""
+    told = invoked("show", filed(tmp_path / "gyrostat.yaml", text), "conditions").stdout.splitlines()
+    at = told.index("otherwise unstable (Kelvin-Chetaev), if:")
+    assert told[at + 1 : at + 6] == [
+        "v0 < 0", "otherwise unstable (Lyapunov's first method), if at least one of these holds:", "v2 < 0",
+        "discriminant < 0", "# v2 of beta, gamma",
+    ]  # fmt: skip
+    v0 = told[told.index("# v0 of beta, gamma") + 1]
+    assert v0 == "2 w0^2 (4 w0 (A - C) - J (2 w0 + s)) (2 w0 (B - C) - J (w0 + 2 s)) > 0"
+
+
 def test_conditions_of_what_holds_for_all_parameters_are_its_verdict(tmp_path: Path) -> None:
     """A Hurwitz minor that is positive is no condition, nor one of a motion that is unstable whatever it is.
 
