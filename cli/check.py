@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 #: How complaints are written: for people, or for a program that reads them on standard output.
 OUTPUT_FORMATS = ("text", "github", "sarif", "json")
 
+#: Of more wrong descriptions only how many there are stands in the last line.
+MOST_NAMED = 5
+
 
 @click.command("check")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
@@ -68,8 +71,11 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
             codes[path] = Exit.FAILED
     wrong = [printable(path) for path, code in codes.items() if code != Exit.OK]
     if wrong and len(paths) > 1:
+        named, more = ", ".join(wrong[:MOST_NAMED]), len(wrong) - MOST_NAMED
+        if more > 0:
+            named = Message("[[names]] and [[more]] more", names=named, more=more)
         text = "[[count]] descriptions: [[good]] ok, not ok: [[wrong]]"
-        told = Message(text, count=len(paths), good=len(paths) - len(wrong), wrong=", ".join(wrong))
+        told = Message(text, count=len(paths), good=len(paths) - len(wrong), wrong=named)
         print(wrapped(speaking(*paths)(told), asked_width()))
     sys.exit(max(codes.values()))
 
@@ -99,7 +105,7 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
 
 
 def _check(path: Path) -> Exit:
-    system = read_description(path)
+    system = read_description(path, writes=False)
     if system is None:
         return Exit.BAD_INPUT
     sound = Message("ok: [[name]]; [[size]]", name=system.name, size=_size(system))

@@ -242,7 +242,7 @@ def paused() -> Iterator[None]:
 
 
 def read_description(
-    path: Path, unconstrained: str = "", moving: str = "", instead: str = "", free: bool = True
+    path: Path, unconstrained: str = "", moving: str = "", instead: str = "", free: bool = True, writes: bool = True
 ) -> System | None:
     """The system of a file, or None after printing every complaint on standard error.
 
@@ -250,7 +250,7 @@ def read_description(
 
     ``unconstrained`` names a command that does not know constraints: relations that give coordinates are put in, others
     are complained about, with what works ``instead``.  ``moving`` names one that needs equations of motion, which a
-    system that is given by its matrices has not.
+    system that is given by its matrices has not.  ``writes``: that nothing was written is said where there are errors.
     """
     from mbsym.model.substitution import lacking_law, with_laws
     from mbsym.report.language import Language
@@ -277,12 +277,12 @@ def read_description(
     for complaint in complaints.sorted():
         diagnose(render(complaint, text, str(path), say))
     if count := len(complaints.errors):
-        complain(path, say(counted(count)))
+        complain(path, say(counted(count) if writes else Message("errors: [[count]]", count=count)))
     return None if complaints.errors else system
 
 
 def counted(errors: int) -> Message:
-    """The last line where there are errors."""
+    """The last line where there are errors, of what would have written something."""
     many = "[[count]] errors; nothing was written." if errors > 1 else "[[count]] error; nothing was written."
     return Message(many, count=errors)
 

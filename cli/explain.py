@@ -82,7 +82,11 @@ def _as_known(word: str) -> str:
 
 
 def _near(word: str) -> list[str]:
-    """Names that hold the word, or the one that resembles it."""
+    """What is called so elsewhere; names that hold the word, or the one that resembles it."""
+    from mbsym.source.keys import MEANT
+
+    if (meant := MEANT.get(word.casefold())) is not None:
+        return [meant]
     holding = [entry for entry in known_words() if word.casefold() in entry.casefold().replace("-", " ").split()]
     return holding[:3] or get_close_matches(word, known_words(), 1)
 

@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 def command(name: str, like: str | None, language: str | None) -> None:
     """Write NAME.yaml, a commented description that runs as it is.
 
-    Asks for the bodies and their joints; with --like, or where nobody can answer, it takes a shipped system.  A file
+    Asks for the bodies and their joints; with --like, or where nobody can answer, it takes a shipped system
+    (that of this name, if there is one).  A file
     that is there already is not replaced without --force.
 
     \b
@@ -45,7 +46,7 @@ def command(name: str, like: str | None, language: str | None) -> None:
       mbsym new crane
       mbsym new my-pendulum --like pendulum
     """
-    from mbsym.source.examples import example_like
+    from mbsym.source.examples import example_in, example_like
     from mbsym_cli.files import write_whole
 
     options = Options()
@@ -57,7 +58,7 @@ def command(name: str, like: str | None, language: str | None) -> None:
     else:
         options.unwritten("NAME", path)
     if like is None and not _answers():
-        like = "pendulum"
+        like = example_in(path.stem)
     example = None if like is None else example_like(like)
     if like is not None and example is None:
         options.word("--like", like, example_names(), "example")

@@ -63,8 +63,13 @@ def _superfluous(words: str, error: click.UsageError) -> Message:
     """With the option by which the first word would be understood, where that is anybody's guess."""
     word = words.split()[0]
     options = {name for x in (error.ctx.command.params if error.ctx is not None else ()) for name in x.opts}
-    fitting = (("--set", "=" in word), ("--time", re.fullmatch(r"[\d.]+(e\d+)?", word) is not None), ("--out", True))
-    option = next((name for name, fits in fitting if fits and name in options), "")
-    if not option:
+    fitting = {
+        f"--set {word}": "=" in word,
+        f"--time {word}": re.fullmatch(r"[\d.]+(e\d+)?", word) is not None,
+        f"--x {word}=0:1": word.isidentifier(),
+        f"--out {word}": True,
+    }
+    meant = next((text for text, fits in fitting.items() if fits and text.split()[0] in options), "")
+    if not meant:
         return Message("unexpected: [[words]]", words=words)
-    return Message("unexpected: [[words]]; did you mean '[[meant]]'?", words=words, meant=f"{option} {word}")
+    return Message("unexpected: [[words]]; did you mean '[[meant]]'?", words=words, meant=meant)

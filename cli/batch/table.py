@@ -213,7 +213,8 @@ def totals(summary: Summary) -> Message:
             parts += [Message(NUMBER_OF, count=count - cached, outcome=worded(word))] if count > cached else []
             parts += [Message(NUMBER_OF, count=cached, outcome=UP_TO_DATE)] if cached else []
         else:
-            parts.append(Message(NUMBER_OF, count=count, outcome=worded(word)))
+            found = Message("[[count]] with errors", count=count)
+            parts.append(found if outcome is Outcome.ERRORS else Message(NUMBER_OF, count=count, outcome=worded(word)))
     refuted = sum(map(_refuted, summary.rows))
     parts += [Message("claims refuted: [[count]]", count=refuted)] if refuted else []
     what = joined(parts, ", ") if parts else Message("nothing to do")

@@ -274,7 +274,8 @@ def state_space_of(analysis: Analysis) -> StateSpace:
     if analysis.system.constraints:
         _ = analysis.linearisation  # the motion exists, and is steady
         return reduced_state_space(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
-    return state_space(analysis.parameters_scene, analysis.expanded, analysis.linearisation, analysis.equilibrium)
+    expanded = None if analysis.system.linear is not None else analysis.expanded
+    return state_space(analysis.parameters_scene, expanded, analysis.linearisation, analysis.equilibrium)
 
 
 def first_order_of(analysis: Analysis) -> FirstOrder:

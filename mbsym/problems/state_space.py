@@ -55,7 +55,8 @@ Rows = list[list[Polynomial]]
 class StateSpace(Shown):
     """A (s x s), B (s x m), C (p x s), D (p x m); ``states`` are q and q' by name, deviations from the motion.
 
-    Without constraints s = 2n; under them the states are the independent coordinates, then the independent velocities.
+    Without constraints s = 2n; under them the states are the independent coordinates, then the independent velocities;
+    of equations that are given in the form x' = A x + B u they are x.
     """
 
     states: tuple[str, ...]
@@ -72,21 +73,25 @@ class StateSpace(Shown):
         return self.A.terms + self.B.terms + self.C.terms + self.D.terms
 
 
-def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibrium: Equilibrium) -> StateSpace:
+def state_space(scene: Scene, expanded: Scene | None, linear: Linearisation, equilibrium: Equilibrium) -> StateSpace:
     """A, B, C, D, with ``expanded`` the system over jets; functions of the time where the motion is not steady.
 
-    Raises NoClosedForm where M couples too many coordinates; SingularPoint where M is singular for all parameters.
+    A system that is given by its matrices has no outputs, and is not expanded.  Raises NoClosedForm where M couples too
+    many coordinates; SingularPoint where M is singular for all parameters.
     """
-    ring, system = scene.ring, expanded.system
+    ring, system = scene.ring, (expanded or scene).system
     n, m = len(linear.coordinates), len(linear.inputs)
     stiffness = _sum(ring, linear.K.polynomials, linear.N.polynomials, -1)
     damping = _sum(ring, linear.D.polynomials, linear.G.polynomials, -1)
     gains = [[] for _ in range(n)] if linear.B is None else [list(row) for row in linear.B.polynomials]
+    if system.linear is not None and system.linear.of_first_order:  # M = 0, D + G = 1
+        A, B = Matrix.of(ring, stiffness), Matrix.of(ring, gains)
+        return StateSpace(system.coordinates, linear.inputs, (), A, B, Matrix.of(ring, []), Matrix.of(ring, []))
     right = [[*stiffness[i], *damping[i], *gains[i]] for i in range(n)]
     solved = _solved(ring, [list(row) for row in linear.M.polynomials], right)
     upper = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
     images = equilibrium.determined(scene)
-    slopes = [expanded.lower(output.value).first for output in system.outputs]
+    slopes = [expanded.lower(output.value).first for output in system.outputs] if expanded is not None else []
     measured = [
         [steadied(scene, ring.substitute(row.get(k, ring.zero), images)) for k in range(2 * n + m)] for row in slopes
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeGuard
+from typing import TypeGuard, TypeVar, cast
 
 from mbsym.algebra.characteristic import Polynomial, lienard_chipart, subdiscriminants
 from mbsym.algebra.factors import rational_ratio
@@ -42,6 +42,7 @@ class Statement:
     ``formula`` is None where the statement cannot hold, or is too long to be written out; ``note`` says so.  ``never``
     is the polynomial, as it arises, of a statement that cannot hold.  ``place``: what follows where it fails.
     ``in_coefficients``: the same in the coefficients of the characteristic polynomial, where ``formula`` is long.
+    ``freed``: of a coefficient as it is, what is left of it without factors that are positive.
     """
 
     label: str
@@ -51,6 +52,7 @@ class Statement:
     never: Formula | None = None
     place: Place = Place.NECESSARY
     in_coefficients: InCoefficients | None = None
+    freed: Formula | None = None
 
     @property
     def opposite(self) -> bool:
@@ -61,6 +63,12 @@ class Statement:
     def bare(self) -> str:
         """Its label, v4 for -(v4)."""
         return _bare(self.label)
+
+    @property
+    def whole(self) -> str:
+        """The label of what it is, or of what it is a part of: v4 for v4, without squares."""
+        bare = self.bare
+        return bare.gaps["label"] if isinstance(bare, Message) and bare.text == PART else bare
 
     @property
     def named(self) -> bool:
@@ -121,7 +129,9 @@ def _stated(ring: Ring, requirement: Requirement, labels: Labels) -> Iterator[St
     if _bare(label) in labels.letters and condition.kind in ("inequality", "nonzero", "always"):
         relation = "!=" if condition.kind == "nonzero" else requirement.relation
         at = requirement.strict if condition.kind == "nonzero" else place
-        yield Statement(label, Formula(ring, requirement.polynomial), relation, note, None, at)
+        split = condition.kind != "inequality" or condition.nonzero
+        freed = None if split else Formula(ring, condition.polynomial)
+        yield Statement(label, Formula(ring, requirement.polynomial), relation, note, None, at, freed=freed)
         return
     # g f^2 > 0 is g > 0 and f != 0: two polynomials, which must not have one name.
     several = condition.kind == "inequality" or len(condition.nonzero) > 1
@@ -192,11 +202,23 @@ class CaseStatement:
         return bool(self.all_of or self.any_of or self.otherwise)
 
 
-def cases(ring: Ring, candidates: Sequence[Case], labels: Labels, uncovered: bool = False) -> list[CaseStatement]:
-    """The cases that can occur, what an earlier one says left out of each.  ``labels``: what labels mean beside them.
+def told_cases(part: SubsystemStability) -> list[CaseStatement]:
+    """The cases of a subsystem by which its verdict is told: none where its word says all."""
+    word, known = part.theory.verdict.word, [case for case in cases(part) if case.conditional]
+    if word.asymptotic or word is Word.UNSTABLE or all(case.word is word is Word.UNDECIDED for case in known):
+        return []
+    if word is Word.UNSTABLE_BUT_BORDERS and any(case.word is not Word.UNSTABLE for case in known):
+        return []  # the conditions of the others hold nowhere inside
+    return known
 
-    ``uncovered``: parameters are known at which none of them holds; that these are undecided is the last.
+
+def cases(part: SubsystemStability) -> list[CaseStatement]:
+    """The cases that can occur, what an earlier one says left out of each.
+
+    Where parameters are known at which none of them holds, that these are undecided is the last.
     """
+    ring, candidates = part.ring, part.theory.cases
+    labels = label_meanings(ring, part.theory.requirements)
     certain = next((k for k, case in enumerate(candidates) if case.always), len(candidates))
     possible = (
         CaseStatement(
@@ -210,7 +232,7 @@ def cases(ring: Ring, candidates: Sequence[Case], labels: Labels, uncovered: boo
         if not case.never
     )
     listed = list(_without_repeats(possible))
-    if uncovered and listed:
+    if part.theory.uncovered and listed:
         nothing = Message("None of the theorems that were tried decides there.")
         listed.append(CaseStatement((), (), Word.UNDECIDED, (), nothing, otherwise=True))
     return listed
@@ -272,9 +294,10 @@ def _alike(some: Sequence[Statement], others: Sequence[Statement]) -> bool:
 
 def _says(statement: Statement, other: Statement, relation: str = "") -> bool:
     """Whether it is the other one; with ``relation``: whether it is that between the other's polynomial and 0."""
-    if statement.formula is None or other.formula is None:
+    one, two = (x.freed or x.formula for x in (statement, other))
+    if one is None or two is None:
         return False
-    ratio = rational_ratio(statement.formula.polynomial, other.formula.polynomial)
+    ratio = rational_ratio(one.polynomial, two.polynomial)
     if ratio is None or relation:
         return ratio is not None and statement.relation == relation
     return statement.relation == (other.relation if ratio > 0 else OPPOSITE.get(other.relation, other.relation))
@@ -298,6 +321,35 @@ class Reference:
 
 
 OPPOSITE = {">": "<", "<": ">", ">=": "<=", "<=": ">="}
+
+Stood = TypeVar("Stood")
+
+
+def as_stood(item: Statement, seen: list[tuple[Formula, Stood]]) -> tuple[Stood, str]:
+    """p > 0; where -p or a multiple stood before, by that: p < 0, v0 < 0; so, too, where all signs of p are minus.
+
+    ``seen``: polynomials that stood before, and as what; p is added.
+    """
+    assert item.formula is not None
+    formula, freed, reversed_ = item.formula, item.freed or item.formula, OPPOSITE.get(item.relation, item.relation)
+    for previous, told in seen:
+        ratio = rational_ratio(freed.polynomial, previous.polynomial)
+        if ratio is not None:
+            return told, item.relation if ratio > 0 else reversed_
+    minus = all(coefficient < 0 for coefficient in formula.polynomial.coeffs())
+    if minus:
+        formula, freed = -formula, -freed
+    stood = cast("Stood", formula)
+    seen.append((freed, stood))
+    return stood, reversed_ if minus else item.relation
+
+
+def stood_by_name(item: Statement, name: Stood, seen: list[tuple[Formula, Stood]]) -> tuple[Stood, str]:
+    """The same of a condition that is told by its name, that of the one that it is reversed, if it is."""
+    assert item.formula is not None
+    freed = item.freed or item.formula
+    seen.append((-freed if item.opposite else freed, name))
+    return name, OPPOSITE.get(item.relation, item.relation) if item.opposite else item.relation
 
 
 class Shown:

@@ -19,12 +19,23 @@ from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
 from mbsym.mechanics.energy import body_energy
 from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
-from mbsym.model.system import INERTIAL
+from mbsym.model.system import INERTIAL, System
 from mbsym.problems.constraints.motion import dependent_velocities
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
-from mbsym.report.conditions import Labels, Shown, Statement, cases, is_letter, label_meanings, statements
-from mbsym.report.content import Number
-from mbsym.report.sections.equations import balances
+from mbsym.problems.stability.words import Word
+from mbsym.report.conditions import (
+    CaseStatement,
+    Shown,
+    Statement,
+    as_stood,
+    is_letter,
+    statements,
+    stood_by_name,
+    told_cases,
+)
+from mbsym.report.content import Number, Symbol
+from mbsym.report.sections.equations import balances, is_short
+from mbsym.report.sections.stability import label_of
 
 if TYPE_CHECKING:
     from mbsym.algebra.signs import Signs
@@ -34,6 +45,7 @@ if TYPE_CHECKING:
     from mbsym.problems.constraints.result import Solved
     from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.stability.problem import SubsystemStability
+    from mbsym.problems.stability.verdict import Verdict
 
 #: The languages in which a formula is written; the first is for people.
 LANGUAGES = ("text", "latex", "wolfram", "python")
@@ -226,7 +238,9 @@ def _matrix(name: str) -> Callable[[Analysis], Iterator[Line]]:
         value = getattr(analysis.linearisation, name)
         if value is None:
             raise NoClosedForm("the system has no inputs")
-        yield Line(name, value)
+        inputs = ", ".join(analysis.system.input_names)
+        text = "M q'' + (D + G) q' + (K + N) q = B v of v = ([[inputs]])"
+        yield Line(name, value, remark=Message(text, inputs=inputs) if name == "B" else "")
 
     return lines
 
@@ -248,6 +262,12 @@ def _state_space(analysis: Analysis) -> Iterator[Line]:
         yield Line("C", form.C, remark=Message("C x + D v are ([[outputs]])", outputs=", ".join(form.outputs)))
     if form.inputs and form.outputs:
         yield Line("D", form.D)
+
+
+def beside_state_space(names: Sequence[str], system: System) -> list[str]:
+    """The names to print: beside A, B, C and D are those of its x' = A x + B v, y = C x + D v, and told with it."""
+    with_it = {"B": bool(system.inputs), "C": bool(system.outputs), "D": bool(system.inputs and system.outputs)}
+    return [x for x in names if "A" not in names or system.speeds or not with_it.get(x)]
 
 
 def _characteristic(analysis: Analysis) -> Iterator[Line]:
@@ -296,57 +316,84 @@ def _freed(ring: Ring, known: Signs, row: Iterable[tuple[Polynomial, ...]]) -> l
 
 
 def _conditions(analysis: Analysis) -> Iterator[Line]:
-    """What ``statements`` lists, with what each is needed for; of a long one first the letters that it is told in.
-
-    In front of it what verdicts presume, and the first case, where its conditions are others: sufficient ones.
-    """
+    """What verdicts presume; of each subsystem its verdict, or its cases; then the conditions that these name."""
     if analysis.system.inputs:
         yield Line("", Message("while the inputs keep their values on the unperturbed motion"))
-    own = analysis.equilibrium.conditions
-    presumed = analysis.stability.presumed
-    further = (x for x in presumed if all(rational_ratio(x.polynomial, y.polynomial) is None for y in own))
+    own, stability = analysis.equilibrium.conditions, analysis.stability
+    further = (x for x in stability.presumed if all(rational_ratio(x.polynomial, y.polynomial) is None for y in own))
     for x in (*own, *further):
         yield Line("", x, remark=Message("provided that"))
-    for part in analysis.stability.subsystems:
-        of = ", ".join(part.coordinates)
-        labels = label_meanings(part.ring, part.theory.requirements)
-        items = list(statements(part.ring, part.theory.requirements, told=labels))
-        yield from _of_other_conditions(part, labels, items, of)
-        text = "conditions: [[wanted]]"
-        if not items:
-            text = "conditions: [[wanted]]; none was found"
-        if not items and part.theory.requirements:
-            text = "conditions: [[wanted]]; none is left that might fail"
-        yield Line("", Message(text, wanted=worded(part.theory.wanted)), "", of)
-        shown = Shown()
-        for item in items:
-            formula: Any = item.formula or item.never or item.note
-            if item.in_coefficients is not None:
-                formula, letters = item.in_coefficients.formula, shown.unshown(item.in_coefficients)
-                yield from (Line(letter, value) for letter, value in letters if not is_letter(value, str(letter)))
-            yield Line("", formula, item.relation, _remark(item, of))
-            shown.show(item)
+    if len(stability.subsystems) > 1 and stability.verdict.word is not Word.DEPENDS:
+        yield Line("", _verdict(stability.verdict), "", Message("the whole system"))
+    for part in stability.subsystems:
+        of, verdict, told = ", ".join(part.coordinates), part.theory.verdict, told_cases(part)
+        items = list(statements(part.ring, part.theory.requirements))
+        listed = [item.whole for item in items if item.formula is not None]
+        lines = [] if told and verdict.word in (Word.DEPENDS, Word.UNDECIDED) else [Line("", _verdict(verdict))]
+        seen: list[_Stood] = []
+        for k, case in enumerate(told):
+            lines += _of_case(case, bool(k), listed, seen)
+        yield from (replace(line, remark=line.remark if k else of) for k, line in enumerate(lines))
+        if not (told or verdict.word.stable or verdict.word is Word.UNSTABLE):
+            text = "conditions: [[wanted]]"
+            if not items:
+                text = "conditions: [[wanted]]; none was found"
+            if not items and part.theory.requirements:
+                text = "conditions: [[wanted]]; none is left that might fail"
+            yield Line("", Message(text, wanted=worded(part.theory.wanted)))
+            yield from _required(items, of)
+        named = [name for _, name in seen if isinstance(name, str)]
+        yield from _required([item for item in items if item.label in named or item.whole in named], of)
 
 
-def _of_other_conditions(
-    part: SubsystemStability, labels: Labels, items: Sequence[Statement], of: str
-) -> Iterator[Line]:
-    """The first case, if it needs all of some conditions, one of which is none of the ``items``, nor one reversed."""
-    listed = Shown()
+#: A polynomial of a condition, and as what it stood: in full, or by its name.
+_Stood = tuple[Formula, Formula | str]
+
+
+def _verdict(of: Verdict | CaseStatement) -> Message:
+    theorems = (" (", joined(map(worded, of.theorems), ", "), ")") if of.theorems else ()
+    return joined((worded(of.word.value), *theorems), "")
+
+
+def _of_case(case: CaseStatement, further: bool, listed: Sequence[str], seen: list[_Stood]) -> Iterator[Line]:
+    """A case, its conditions in full; a long one that is ``listed`` by its name there."""
+    verdict = joined((Message("otherwise"), _verdict(case))) if further else _verdict(case)
+    if case.otherwise:
+        yield Line("", verdict)
+        return
+    several = len(case.all_of or case.any_of) > 1
+    which = "if all of these hold" if case.all_of else "if at least one of these holds"
+    yield Line("", joined((verdict, ", ", Message(which if several else "if"), ":"), ""))
+    long = not all(item.formula and is_short(item.formula) for item in (*case.all_of, *case.any_of))
+    yield from (_of_condition(item, long, listed, seen) for item in case.all_of)
+    if case.all_of and case.any_of:
+        which = "and at least one of these holds" if len(case.any_of) > 1 else "and"
+        yield Line("", joined((Message(which), ":"), ""))
+    yield from (_of_condition(item, long, listed, seen) for item in case.any_of)
+
+
+def _of_condition(item: Statement, long: bool, listed: Sequence[str], seen: list[_Stood]) -> Line:
+    if item.formula is None:
+        return Line("", item.never or item.note, item.relation, worded(item.label))
+    letter = is_letter(-item.formula if item.opposite else item.formula, item.bare)
+    hard = not is_short(item.formula) or (long and isinstance(label_of(item.bare), Symbol))
+    if hard and not letter and item.whole in listed:
+        stood, relation = stood_by_name(item, item.bare, seen)
+    else:
+        stood, relation = as_stood(item, seen)
+    return Line("", joined((worded(stood), relation, "0")) if isinstance(stood, str) else stood, relation)
+
+
+def _required(items: Iterable[Statement], of: str) -> Iterator[Line]:
+    """Statements, with what each is needed for; of a long one first the letters that it is told in."""
+    shown = Shown()
     for item in items:
-        listed.show(item)
-    told = (x for x in cases(part.ring, part.theory.cases, labels, part.theory.uncovered) if x.conditional)
-    case = next(told, None)  # the others are about what is left of it
-    if case is None or case.any_of or all(map(listed.reference, case.all_of)):
-        return
-    if any(item.formula is None for item in case.all_of):
-        return
-    verdict = Message("[[verdict]], if all of these hold:", verdict=worded(case.word.value))
-    if case.theorems:
-        text = "[[verdict]] ([[theorems]]), if all of these hold:"
-        verdict = Message(text, verdict=worded(case.word.value), theorems=joined(map(worded, case.theorems), ", "))
-    yield Line("", verdict, "", of)
-    yield from (Line("", cast(Formula, item.formula), item.relation) for item in case.all_of)
+        formula: Any = item.formula or item.never or item.note
+        if item.in_coefficients is not None:
+            formula, letters = item.in_coefficients.formula, shown.unshown(item.in_coefficients)
+            yield from (Line(letter, value) for letter, value in letters if not is_letter(value, str(letter)))
+        yield Line("", formula, item.relation, _remark(item, of))
+        shown.show(item)
 
 
 def _remark(item: Statement, of: str) -> str:

@@ -17,7 +17,7 @@ from mbsym.problems.stability.words import (
     MALKIN,
     ROUTH,
 )
-from mbsym.report.conditions import cases, label_meanings
+from mbsym.report.conditions import cases
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def theorems_named(stability: Stability) -> Iterator[str]:
     """Every theorem that problem 6 names, in the order of the report, with repetitions."""
     for part in stability.subsystems:
         theory = part.theory
-        for case in cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered):
+        for case in cases(part):
             yield from case.theorems if case.conditional else ()
         yield from theory.verdict.theorems
     yield from stability.verdict.theorems

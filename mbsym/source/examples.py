@@ -37,6 +37,12 @@ def example_like(word: str) -> str | None:
     return next(iter(ending or [name for name in names if slug and slug in name]), None)
 
 
+def example_in(title: str) -> str:
+    """The shipped system whose name stands in a title, cart-pole in my-cart-pole; the longest, or the pendulum."""
+    slug = title.lower().replace("_", "-").replace(" ", "-")
+    return max((name for name in example_names() if name in slug), key=len, default="simple-pendulum")
+
+
 @cache
 def example_titles() -> list[dict[str, str]]:
     """``name`` and ``title`` of each, as it is written there, for a list to begin with."""

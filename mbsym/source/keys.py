@@ -714,6 +714,17 @@ def spellings(key: str) -> list[str]:
     return [other for other, canonical in ALIASES.items() if canonical == key]
 
 
+#: Keys as others call them: complained about, and read as what is meant where that can stand.
+MEANT: dict[str, str] = {
+    **dict.fromkeys(("translation", "position", "offset", "displacement", "location", "origin"), "connection point"),
+    **dict.fromkeys(("parent", "parent body", "previous body", "connected to"), "attached to"),
+    **dict.fromkeys(("com", "cog", "centre of gravity", "center of gravity"), "mass centre"),
+    **dict.fromkeys(("moment of inertia", "moments of inertia", "inertia tensor"), "inertia"),
+    **dict.fromkeys(("initial conditions", "initial state", "initial values", "states"), "initial"),
+    **dict.fromkeys(("equilibrium", "operating point", "unperturbed motion"), "motion"),
+    "title": "name",
+}
+
 #: What other programs write, and what is written here: no slip of the pen for something else.
 _LOOPS = Message(
     "loops are closed under 'constraints': - coincide: [{body: A, point: [0, 0, 0]}, {body: B, point: [0, 0, 0]}]"

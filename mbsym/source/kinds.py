@@ -224,14 +224,16 @@ class Item:
 
     def _ends(self, node: Node, record: grammar.Record, what: str) -> tuple[Any, Any] | None:
         """The two ends in a list of two."""
+        vector = "[0, 0, 1]" if record.called == "axis" else "[0, 0, 0]"
+        hint = f"[{', '.join(f'{{body: {body}, {record.called}: {vector}}}' for body in 'AB')}]"
+        if not isinstance(node, Sequence):
+            self.reading.shape_error(node, what, "a list", hint)
+            return None
         items = self.reading.items(node, what)
         if len(items) == 2:
             return self._end(items[0], record), self._end(items[1], record)
-        if isinstance(node, Sequence):
-            vector = "[0, 0, 1]" if record.called == "axis" else "[0, 0, 0]"
-            hint = ", ".join(f"{{body: {body}, {record.called}: {vector}}}" for body in "AB")
-            message = Message("[[what]] wants two items, not [[items]]", what=worded(what), items=len(items))
-            self.reading.error("wrong-shape", message, node.span, f"[{hint}]")
+        message = Message("[[what]] wants two items, not [[items]]", what=worded(what), items=len(items))
+        self.reading.error("wrong-shape", message, node.span, hint)
         return None
 
     def _end(self, node: Node, record: grammar.Record) -> Any:

@@ -21,7 +21,7 @@ from mbsym.model.system import Vector
 from mbsym.model.units import Declared
 from mbsym.source import placed
 from mbsym.source.grammar import Key, Word
-from mbsym.source.keys import ALIASES, UNSUPPORTED, spellings
+from mbsym.source.keys import ALIASES, MEANT, UNSUPPORTED, spellings
 from mbsym.source.placed import Entry, Node, Scalar, Sequence
 from mbsym.source.scope import Allowed, Scope, closest, did_you_mean
 
@@ -386,7 +386,7 @@ class Reading:
             else:
                 plural = entry.key.text.endswith("s") and entry.key.text[:-1] in left
                 unsupported = None if plural else _unsupported(entry.key.text)
-                guess = None if unsupported else closest(entry.key.text, left)
+                guess = None if unsupported else _meant(entry.key.text, left)
                 keys = (
                     Message("did you mean '[[other]]'?", other=guess)
                     if guess
@@ -406,7 +406,7 @@ class Reading:
         written = [entry.key for entry in node.entries] if isinstance(node, placed.Mapping) else []
         names = [ALIASES.get(key.text, key.text) for key in written]
         if not 2 <= len(names) <= MOST_OTHER or any(
-            name in known or _unsupported(name) or closest(name, known) for name in names
+            name in known or _unsupported(name) or _meant(name, known) for name in names
         ):
             return False
         message = Message(
@@ -419,7 +419,18 @@ class Reading:
 
 def _unsupported(key: str) -> Message | None:
     """What is said of a key that other programs have."""
-    return UNSUPPORTED.get(" ".join(key.lower().replace("_", " ").split()))
+    return UNSUPPORTED.get(_words(key))
+
+
+def _meant(key: str, known: Iterable[str]) -> str | None:
+    """The known key that is meant by another word, or that a misspelt one resembles."""
+    known = list(known)
+    meant = MEANT.get(_words(key))
+    return meant if meant in known else closest(key, known)
+
+
+def _words(key: str) -> str:
+    return " ".join(key.lower().replace("_", " ").split())
 
 
 @dataclass(slots=True)

@@ -21,6 +21,9 @@ from mbsym.source.scope import closest
 from mbsym.source.text_kinds import claim, filled, items, of_kind, row, split
 from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, spoken, word_of
 
+#: What is meant for a heading.
+_MEANT = re.compile(r"(body|load|claim|constraint)(?: description)?\s*[(:#]?\s*([0-9]{1,6})\s*[):.]*\Z", re.IGNORECASE)
+
 #: A label has no more words.
 MOST_WORDS = 8
 #: Fields of the form that may stay empty: zeros, no turn.
@@ -79,6 +82,7 @@ class TextReader:
         header: list[Scalar] = []
         blocks: list[_Block] = []
         for line in lines:
+            line = self.as_heading(line)
             if HEADING.match(line.text) or word_of(line.text.rstrip(":")) in (*SECTIONS, ASSUMPTIONS):
                 blocks.append(_Block(line))
             elif blocks:
@@ -86,6 +90,16 @@ class TextReader:
             else:
                 header.append(line)
         return header, blocks
+
+    def as_heading(self, line: Scalar) -> Scalar:
+        """A line, or the heading that is meant by ``Body 1``, ``Body (1):``, which is complained about."""
+        match = None if HEADING.match(line.text) else _MEANT.match(line.text)
+        if match is None:
+            return line
+        title = f"{match[1].capitalize()} description ({match[2]})"
+        message = Message("this is no heading: [[shown]]", shown=ascii_safe(line.text))
+        self.error("unknown-key", message, line.span, Message("write [[usage]]", usage=title))
+        return Scalar(title, line.span)
 
     def kind(self, block: _Block) -> str:
         match = HEADING.match(block.heading.text)

@@ -144,15 +144,16 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
 def derive(context: Asked, request: Request, watch: Watch) -> Shown:
     """Raises Underived, NotFit for names that there are not."""
     from mbsym.algebra.failures import Failure
-    from mbsym.report.formulas_by_name import given_names, known_names, remarked, written
+    from mbsym.report.formulas_by_name import beside_state_space, given_names, known_names, remarked, written
     from mbsym.report.letters import in_letters, letters_of
     from mbsym.report.plain_writer import Writer
 
     source, language, say = _source(context, request, watch), request.language, Language(context.system.language).say
     usual = ("equations",) if source.system.linear is None else ("M0", "D", "G", "K", "N")
-    if not {*request.names} <= {*given_names(source.analysis)}:
+    asked = beside_state_space(request.names, source.system)
+    if not {*asked} <= {*given_names(source.analysis)}:
         known = known_names(source.analysis)
-        unknown = [name for name in request.names if name not in known]
+        unknown = [name for name in asked if name not in known]
         if unknown:
             raise NotFit([_unknown(name, known) for name in unknown])
     # Other programs know no letters, unless somebody asks for them.
@@ -160,7 +161,7 @@ def derive(context: Asked, request: Request, watch: Watch) -> Shown:
     texts: list[str] = []
     failures: list[tuple[str, Failure]] = []
     with in_letters(source.system, letters) as used:
-        for name in request.names or usual:
+        for name in asked or usual:
             watch(f"deriving {name}")
             try:
                 lines = source.lines(name)

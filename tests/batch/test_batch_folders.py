@@ -233,7 +233,7 @@ def test_the_summary_keeps_to_its_schema(tmp_path: Path) -> None:
     checker.check_schema(schema())
     arguments = ("in", "-o", "out", "--format", "json,c", "--jobs", "1", "--fail-fast")
     told = batch(*arguments, cwd=tmp_path, code=2).stdout
-    assert "4 systems: 2 derived, 1 description errors, 1 skipped, claims refuted: 1; " in told
+    assert "4 systems: 2 derived, 1 with errors, 1 skipped, claims refuted: 1; " in told
     found = summary(tmp_path / "out")
     checker.validate(found)
     assert outcomes(tmp_path / "out") == {"a": "derived", "b": "derived", "c": "description errors", "d": "skipped"}

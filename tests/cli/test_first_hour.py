@@ -90,6 +90,16 @@ def test_new_where_nobody_answers_takes_the_pendulum(tmp_path: Path, monkeypatch
     assert Path("my-crane.yaml").read_text(encoding="utf-8") == text
 
 
+def test_new_begins_with_the_example_of_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, example in (
+        ("spring-pendulum", "spring-pendulum"),
+        ("my_cart_pole", "cart-pole"),
+        ("crane", "simple-pendulum"),
+    ):
+        assert f"begun with the example {example}\n" in command("new", name, code=0).stdout
+
+
 def test_what_new_says_to_run_can_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     told = command("new", "a b.yaml", "--like", "pendulum").stdout

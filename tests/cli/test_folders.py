@@ -73,6 +73,13 @@ def test_a_broken_description_in_a_folder_is_not_passed_over(tmp_path: Path) -> 
     assert "good.yaml: ok" in done.stdout
     assert " ".join(done.stdout.split()).endswith(f"2 descriptions: 1 ok, not ok: {tmp_path / 'bad.yaml'}")
     assert "descriptions" not in invoked("check", tmp_path / "good.yaml", code=0).stdout
+    # What never writes does not say that it has not; of many that are wrong some are named.
+    assert "nothing was written" not in done.stderr
+    for k in range(8):
+        (tmp_path / f"worse{k}.yaml").write_text("mbsym: 1\n", encoding="utf-8")
+    last = " ".join(invoked("check", tmp_path, code=2).stdout.split()).rpartition("not ok: ")[2]
+    assert last.count(".yaml") == 5
+    assert last.endswith("worse3.yaml and 4 more")
 
 
 @pytest.mark.parametrize(

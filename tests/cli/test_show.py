@@ -212,16 +212,87 @@ def test_words_and_roots_may_be_pasted(tmp_path: Path) -> None:
         assert line.startswith("%") or "\\text" not in line
 
 
-def test_conditions_that_suffice_stand_before_those_that_are_needed() -> None:
-    """Gutnik & Sarychev: B - A + h > 0 and 4 (B - C) + h > 0; needed is only their product beside others."""
+def test_conditions_are_the_cases_that_run_tells() -> None:
+    """Gutnik & Sarychev: B - A + h > 0 and 4 (B - C) + h > 0 suffice; what else is told by name stands below."""
     told = show("orbital-gyrostat", "conditions", code=0).stdout.splitlines()
     assert told[:4] == ["# provided that", "h1 = 0", "# provided that", "h3 = 0"]
     at = told.index("stable (Routh), if all of these hold:")
-    assert told[at - 1 : at + 4] == ["# psi, phi", told[at], "B - A + h > 0", "4 B - 4 C + h > 0", "# psi, phi"]
-    assert told[at + 4].startswith("conditions: ")
-    # Pitch needs what suffices, which is told once; where nothing suffices nothing is said to.
-    assert told.count("A - C > 0") == 1
-    assert "if all of these hold" not in show("ziegler", "conditions", code=0).stdout
+    assert told[at - 1] == "# psi, phi"
+    assert told[at + 1 : at + 6] == [
+        "B - A + h > 0", "4 B - 4 C + h > 0",
+        "otherwise gyroscopically stabilised only, if all of these hold:", "v2 > 0", "v0 > 0",
+    ]  # fmt: skip
+    assert "otherwise unstable (Kelvin-Chetaev), if:" in told
+    assert told[told.index("# v0 of psi, phi") + 1] == "(B - A + h) (4 B - 4 C + h) > 0"
+    # Pitch: a condition and its opposite, and no list of what roots need.
+    assert told[-4:] == [
+        "stable (Lagrange-Dirichlet), if:", "A - C > 0",
+        "otherwise unstable (Lyapunov's first method), if:", "A - C < 0",
+    ]  # fmt: skip
+    # Where nothing suffices nothing is said to.
+    assert not [
+        line for line in show("ziegler", "conditions", code=0).stdout.splitlines() if line.startswith("stable (")
+    ]
+
+
+def test_a_condition_up_to_a_positive_factor_is_told_once(tmp_path: Path) -> None:
+    """A gyrostat in orbit, its rotor along the normal: det K < 0 and v0 < 0 are one condition, v0 = 4 det K.
+
+    K22 = w0 (J (w0 + 2 s) - 2 w0 (B - C))/2, K33 = w0 (J (2 w0 + s) - 4 w0 (A - C)), which nothing couples (Roberson).
+    """
+    text = """
+mbsym: 1
+name: gyrostat
+parameters: {A: positive, B: positive, C: positive, J: positive, w0: positive, s: real, nu: positive, R: positive}
+bodies:
+  - {name: orbit, attached to: 0, rotation: {axes: [3], angles: [w0*t]},
+     connection point: [R*cos(w0*t), R*sin(w0*t), 0], mass: 0}
+  - {name: satellite, attached to: orbit, rotation: {axes: [3, 1, 2], angles: [alpha, beta, gamma]}, mass: 1,
+     inertia: [A, B, C], inertia about: mass centre}
+  - {name: rotor, attached to: satellite, rotation: {axes: [3], angles: [s*t]}, mass: 0, inertia: [J/2, J/2, J],
+     inertia about: mass centre}
+loads: [newtonian gravity: {constant: nu, centre: 0, about: orbit}]
+relations: {nu: w0^2*R^3}
+motion: {alpha: 0, beta: 0, gamma: 0}
+"""
+    told = invoked("show", filed(tmp_path / "gyrostat.yaml", text), "conditions").stdout.splitlines()
+    at = told.index("otherwise unstable (Kelvin-Chetaev), if:")
+    assert told[at + 1 : at + 6] == [
+        "v0 < 0", "otherwise unstable (Lyapunov's first method), if at least one of these holds:", "v2 < 0",
+        "discriminant < 0", "# v2 of beta, gamma",
+    ]  # fmt: skip
+    v0 = told[told.index("# v0 of beta, gamma") + 1]
+    assert v0 == "2 w0^2 (4 w0 (A - C) - J (2 w0 + s)) (2 w0 (B - C) - J (w0 + 2 s)) > 0"
+
+
+def test_conditions_of_what_holds_for_all_parameters_are_its_verdict(tmp_path: Path) -> None:
+    """A Hurwitz minor that is positive is no condition, nor one of a motion that is unstable whatever it is.
+
+    m x'' + c x' + k x = 0 with c, k > 0, and with -k in place of k.
+    """
+    text = (
+        "mbsym: 1\nname: springs\nparameters: {c: positive, k: positive}\n"
+        "linear system: {coordinates: [x, y], D: [[c, 0], [0, c]], K: [[STIFFNESS, k], [k, 2*k]]}\n"
+    )
+    for stiffness, verdict in (("2*k", "asymptotically stable"), ("-2*k", "unstable")):
+        path = filed(tmp_path / "springs.yaml", text.replace("STIFFNESS", stiffness))
+        assert invoked("show", path, "conditions").stdout == f"# x, y\n{verdict} (Kelvin-Chetaev)\n"
+
+
+def test_beside_a_the_letters_of_inputs_and_outputs_are_those_of_the_state_space(tmp_path: Path) -> None:
+    """x'' + d x' + k x = u: x' = A x + B u has B = (0, 1); nothing is called by one name twice."""
+    told = show("cart-pole", "A", "B", "C", "D", "K", "--python", code=0).stdout
+    assert re.findall(r"^(\w+) = ", told, re.MULTILINE) == ["A", "B", "C", "D", "K"]
+    assert eval(re.search(r"^D = (.*)", told, re.MULTILINE)[1]) == [[0], [0]]
+    # Without inputs D is that of damping.
+    assert show("simple-pendulum", "A", "D", code=0).stdout.endswith("D = b\n")
+    start = "mbsym: 1\nname: given\nparameters: {d: positive, k: positive}\ninputs: {u: {}}\nlinear system: "
+    given = filed(tmp_path / "given.yaml", start + "{coordinates: [x], D: [[d]], K: [[k]], B: [[1]]}\n")
+    told = invoked("show", given, "A", "B", "--python").stdout.splitlines()
+    assert told[1::2] == ["A = [[0, 1], [-k, -d]]", "B = [[0], [1]]"]
+    first = filed(tmp_path / "first.yaml", start + "{coordinates: [x, v], A: [[0, 1], [-k, -d]], B: [[0], [1]]}\n")
+    assert invoked("show", first, "A", "B", "--python").stdout.splitlines()[1::2] == told[1::2]
+    assert "(x, v)" in invoked("show", first, "A").stdout
 
 
 def test_determinants_are_those_that_a_paper_prints() -> None:

@@ -18,7 +18,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report import conditions
 from mbsym.report.latex.appendix import fragment, joined, render
-from mbsym.report.latex.displays import written_out
+from mbsym.report.latex.displays import display, written_out
 from mbsym.report.latex.labels import labels, prefix_of, slug
 from mbsym.report.targets import TARGETS
 from mbsym.report.whole_run import rendered
@@ -353,3 +353,14 @@ def test_a_theorem_that_is_cited_is_one_that_decides(name: str) -> None:
     theorems = re.findall(r"([^;~]+)~", cited.partition(".")[0])
     assert theorems
     assert [x for x in map(str.strip, theorems) if f"{x})" not in words and f"{x}," not in words] == []
+
+
+def test_a_short_bracket_is_not_broken_while_something_else_can_be() -> None:
+    first, second = r"4 w_{0} (A - C) - J (2 w_{0} + s)", r"2 w_{0} (B - C) - J (w_{0} + 2 s)"
+    shown = display(rf"v_{{0}} = 2 w_{{0}}^{{2}} \bigl[{first}\bigr] \bigl[{second}\bigr]", "v")
+    assert shown.startswith(r"\begin{multline}")
+    for short in ("(A - C)", "(2 w_{0} + s)", "(B - C)", "(w_{0} + 2 s)"):
+        assert short in shown
+    # What is one short bracket and too wide for nothing else is broken in it after all.
+    names = " + ".join(f"x_{{{k}}}" for k in range(40))
+    assert len(display(f"y = ({names})").split("\n")) > 3

@@ -69,6 +69,11 @@ class Rank(Shown):
     locus: Locus | None = None
     why_not: str = ""
 
+    @property
+    def everywhere(self) -> bool:
+        """Whether it is full at all parameters that are allowed."""
+        return self.full and self.locus == Locus()
+
 
 @dataclass(frozen=True, repr=False)
 class Motion(Shown):

@@ -246,23 +246,42 @@ def closing_brace(text: str, start: int) -> int:
 
 _BRACE = re.compile(r"\\.|[{}]", re.DOTALL)
 
-#: Where a narrow column may break a formula if nothing better is left: at signs in short brackets, between factors.
-_PLACES = re.compile(r"\\[{}]|[{}]|(?<=[^ ]) (?=[+-] )|(?<=[^ ]) (?=\\(?:sin|cos|exp|ln)\b|\\[bB]igl|\()")
+#: Where a narrow column may break a formula if nothing better is left: at signs in brackets, between factors, at signs
+#: in brackets that are no wider than ``SHORT``.
+_PLACES = re.compile(r"\\[{}]|[{}()\[\]]|(?<=[^ ]) (?=[+-] )|(?<=[^ ]) (?=\\(?:sin|cos|exp|ln)\b|\\[bB]igl|\()")
 _PENALTY = re.compile(r"\\penalty[0-9]+ ?\Z")
-_AT_SIGNS, _BETWEEN_FACTORS = 5000, 9000
+_AT_SIGNS, _BEFORE_BRACKETS, _BEFORE_FUNCTIONS, _IN_SHORT = 5000, 9000, 9200, 9500
+#: In ems, and in characters of TeX.
+SHORT, MOST_SHORT = 10.0, 200
 
 
 def loosened(formula: str) -> str:
     """The formula with places at which it is broken rather than standing out into the margin."""
-    pieces, place, depth = [], 0, 0
+    pieces, place, depth, short = [], 0, 0, [False]
     for match in _PLACES.finditer(formula):
         if match[0] in "{}":
             depth += 1 if match[0] == "{" else -1
+        elif match[0] in "([":
+            short.append(_is_short(formula[match.end() : match.end() + MOST_SHORT]))
+        elif match[0] in ")]":
+            short = short[:-1] or [False]
         elif match[0] == " " and depth == 0 and not _PENALTY.search(formula, max(0, match.start() - 16), match.end()):
-            sign = formula[match.end()] in "+-"
-            pieces += [formula[place : match.start()], f"\\penalty{_AT_SIGNS if sign else _BETWEEN_FACTORS} "]
+            sign, bracket = formula[match.end()] in "+-", formula.startswith(("(", "\\b", "\\B"), match.end())
+            at_sign = _IN_SHORT if short[-1] else _AT_SIGNS
+            penalty = at_sign if sign else _BEFORE_BRACKETS if bracket else _BEFORE_FUNCTIONS
+            pieces += [formula[place : match.start()], f"\\penalty{penalty} "]
             place = match.start() + (0 if sign else 1)
     return "".join([*pieces, formula[place:]])
+
+
+def _is_short(rest: str) -> bool:
+    """Whether the bracket that is open in front of this closes soon."""
+    depth = 1
+    for match in re.finditer(r"[()\[\]]", rest):
+        depth += 1 if match[0] in "([" else -1
+        if depth == 0:
+            return _width(rest[: match.start()]) <= SHORT
+    return False
 
 
 def _words_outside(formula: str) -> str:
@@ -287,4 +306,4 @@ def _words_outside(formula: str) -> str:
 
 def _loosened(text: str) -> str:
     """Inline lists of formulas may be broken after their commas."""
-    return text.replace(",\\; ", ",\\;\\allowbreak ").replace(",\\, ", ",\\,\\allowbreak ")
+    return re.sub(r",(\\[;,]) (?!\\allowbreak)", r",\1\\allowbreak ", text)

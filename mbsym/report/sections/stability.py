@@ -102,7 +102,7 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
         variable=variable,
         **verdict_data(part.theory.verdict),
         conditions=[_condition_of(item) for item in listed],
-        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, labels, part.theory.uncovered)],
+        cases=[_case(case, shown) for case in cases(part)],
     )
 
 
@@ -160,13 +160,16 @@ def content(results: Results) -> Iterator[Block]:
             ".",
         )
     if stability.numerical is not None:
+        told = {part.theory.verdict.explanation for part in stability.subsystems}
+        again = told == {stability.numerical.explanation} and stability.numerical.word is not Word.UNDECIDED
+        reason = "" if again else stability.numerical.explanation
         yield paragraph(
             Said("At the given values of the parameters"),
             worded(decided(stability)),
             ": ",
             *verdict(stability.numerical),
-            ". ",
-            worded(stability.numerical.explanation),
+            ". " if reason else ".",
+            worded(reason),
         )
         for spectrum in stability.spectra:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
@@ -216,7 +219,7 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
         yield paragraph(Said("Conditions"), " (", worded(theory.wanted), "):")
         yield from _conditions(needed, seen)
     first = True
-    for case in cases(part.ring, theory.cases, labels, theory.uncovered):
+    for case in cases(part):
         if case.conditional:
             yield from _case_told(case, first, seen)
             first = False
@@ -272,7 +275,7 @@ def condition_keys(part: SubsystemStability, number: int) -> Iterator[tuple[Stat
     """The conditions of a subsystem that are shown by formulas, each with the key of its own."""
     seen, labels = _Keyed(number), label_meanings(part.ring, part.theory.requirements)
     known = list(statements(part.ring, part.theory.requirements, True, labels))
-    for case in cases(part.ring, part.theory.cases, labels, part.theory.uncovered):
+    for case in cases(part):
         if case.conditional:
             known += [*case.all_of, *case.any_of]
     for item in known:

@@ -22,7 +22,7 @@ from mbsym.problems.stability.enclosed import numbers
 from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.words import Because, Word
 from mbsym.report.brief import claims_counted, self_check, worst
-from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
+from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, as_stood, stood_by_name, told_cases
 from mbsym.report.content import (
     Beside,
     Block,
@@ -342,17 +342,9 @@ def _within(part: object) -> Iterator[object]:
 def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
     theory = part.theory
-    known = cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered)
-    known = [statement for statement in known if statement.conditional]
-    word = theory.verdict.word
-    if all(statement.word is word is Word.UNDECIDED for statement in known):
-        known = []
+    known, word = told_cases(part), theory.verdict.word
     if word not in (Word.DEPENDS, Word.UNDECIDED) or key or not known:
         yield Phrase(verdict(theory.verdict, key))
-    if word.asymptotic or word is Word.UNSTABLE:
-        return
-    if word is Word.UNSTABLE_BUT_BORDERS and any(statement.word is not Word.UNSTABLE for statement in known):
-        return  # the conditions of the others hold nowhere inside
     keys = list(condition_keys(part, number))
     seen: list[Stood] = []
     last: list[_Condition] = []
@@ -425,9 +417,8 @@ def _condition(item: Statement, long: bool, seen: list[Stood], keys: Keys) -> _C
     name = label_of(item.bare)
     number = _numbered(item.formula, item.relation, keys)
     if (long and isinstance(name, Symbol)) or not is_short(item.formula):
-        seen.append((-item.formula if item.opposite else item.formula, name))
-        return Relation(name, OPPOSITE.get(item.relation, item.relation) if item.opposite else item.relation, 0), number
-    return _relation(item, seen), number
+        return Relation(*stood_by_name(item, name, seen), 0), number
+    return Relation(*as_stood(item, seen), 0), number
 
 
 def _numbered(left: Formula, sign: Math | str, keys: Keys) -> tuple[Numbered, ...]:
@@ -442,20 +433,6 @@ def _numbered(left: Formula, sign: Math | str, keys: Keys) -> tuple[Numbered, ..
 
 def _reversed(relation: Relation) -> tuple[Math | str, ...]:
     return (relation.parts[0], "<", 0) if relation.parts[1] == ">" else ()
-
-
-def _relation(item: Statement, seen: list[Stood]) -> Relation:
-    """p > 0; where -p or a multiple stood before, by that: p < 0, v0 < 0; so, too, where all signs of p are minus."""
-    assert item.formula is not None
-    formula, reversed_ = item.formula, OPPOSITE.get(item.relation, item.relation)
-    for previous, told in seen:
-        ratio = rational_ratio(formula.polynomial, previous.polynomial)
-        if ratio is not None:
-            return Relation(told, item.relation if ratio > 0 else reversed_, 0)
-    minus = all(coefficient < 0 for coefficient in formula.polynomial.coeffs())
-    stood = -formula if minus else formula
-    seen.append((stood, stood))
-    return Relation(stood, reversed_ if minus else item.relation, 0)
 
 
 def _control(stabilisation: Stabilisation) -> Iterator[Inline]:

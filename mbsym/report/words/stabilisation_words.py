@@ -53,7 +53,7 @@ def sentences(stabilisation: Stabilisation) -> Iterator[Said]:
         yield from _dissipation(damped)
     for control in stabilisation.control:
         yield from _control(control)
-        if control.rank.full and control.rank.locus == Locus():
+        if control.rank.everywhere:
             break  # the first is about the whole: so are its parts, which are apart
     if stabilisation.least:
         sets = joined(map(named, stabilisation.least), "; ")
@@ -185,7 +185,12 @@ def _dissipation(part: Dissipation) -> Iterator[Said]:
         yield Said("$D$ is positive definite for [[names]] (proved): dissipation is complete.", names)
         return
     if part.rank.full:
-        yield Said("Every motion of [[names]] but rest is felt by $D$, for almost all parameters (proved).", names)
+        yield Said(
+            "Every motion of [[names]] but rest is felt by $D$ (proved)."
+            if part.rank.everywhere
+            else "Every motion of [[names]] but rest is felt by $D$, for almost all parameters (proved).",
+            names,
+        )
     elif part.rank.factors:
         yield Said(
             "Motions of [[names]] are not felt by $D$ at all parameters (proved): those of the roots of [[roots]].",
@@ -205,7 +210,7 @@ def _dissipation(part: Dissipation) -> Iterator[Said]:
             text = "Not felt: $\\lambda^2 = -([[square]])$, along ([[shape]])."
             yield say(text, square=motion.square, shape=motion.shape)
     yield from _locus(part.rank)
-    if part.at_values is not None:
+    if part.at_values is False or (part.at_values and not part.rank.everywhere):
         yield Said(
             "At the given values $D$ is felt by every motion of [[names]] but rest (proved)."
             if part.at_values
@@ -237,8 +242,6 @@ def _locus(rank: Rank) -> Iterator[Said]:
     if locus.together:
         yield say("It is otherwise where all of these vanish at once: [[where]].", where=compared(locus.together, "="))
     yield from _provided(locus)
-    if not locus.factors and not locus.together and not locus.provided:
-        yield Said("It is so at all parameters that are allowed (proved).")
 
 
 def _provided(locus: Locus | None) -> Iterator[Said]:
@@ -258,8 +261,10 @@ def _roots(factors: Sequence[Sequence[Formula]]) -> Phrase:
 
 
 def controllability(part: Control) -> Said:
-    """Whether the inputs control the coordinates, for almost all parameters, and how surely that is known."""
+    """Whether the inputs control the coordinates, for which parameters, and how surely that is known."""
     gaps: Gaps = {"names": named(part.coordinates), "inputs": named(part.inputs)}
+    if part.rank.everywhere:
+        return Said("Controllability of [[names]] by [[inputs]]: yes (proved).", gaps)
     if part.rank.full:
         return Said("Controllability of [[names]] by [[inputs]]: yes, for almost all parameters (proved).", gaps)
     if part.rank.factors:
@@ -277,7 +282,8 @@ def _control(part: Control) -> Iterator[Said]:
     yield controllability(part)
     yield from _locus(part.rank)
     if part.at_values:
-        yield Said("At the given values they are controllable (proved).")
+        if not part.rank.everywhere:
+            yield Said("At the given values they are controllable (proved).")
     elif part.at_values is False:
         yield Said(
             "At the given values they are not controllable, but what is out of reach decays by itself (proved)."
