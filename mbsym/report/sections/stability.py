@@ -24,9 +24,8 @@ from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.problems.stability.linear_form import CONSERVATIVE
 from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Place
-from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.words import Because, Word
+from mbsym.problems.stability.words import Because, Word, sentence
 from mbsym.report.conditions import (
     CaseStatement,
     Shown,

@@ -19,8 +19,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.stabilisation import Stabilisation
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.enclosed import numbers
-from mbsym.problems.stability.sentences import sentence
-from mbsym.problems.stability.words import Because, Word
+from mbsym.problems.stability.words import Because, Word, sentence
 from mbsym.report.brief import claims_counted, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
