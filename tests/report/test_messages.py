@@ -24,6 +24,7 @@ from mbsym.analysis.stages import NoResult
 from mbsym.batch import outcome
 from mbsym.expressions.message import GAP, Counted, Message
 from mbsym.maps import branches_curve
+from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
 from mbsym.model.constraints import KIND_NAMES
@@ -47,7 +48,7 @@ from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
 from mbsym.report.schemas import schema
 from mbsym.report.words.normal_form_words import REASONS
-from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
+from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY
 from mbsym.source.starter import JOINTS
 from mbsym.studies.simulate import PAIRS
 from mbsym.studies.study import Apart
@@ -250,7 +251,7 @@ def words_of_types() -> set[str]:
     found |= {kind_of(system) for system in systems()}
     found |= {f"{kind} of [[of]]" if one.of and kind != "coefficient" else kind for kind, one in CLAIMS.items()}
     found |= {BUT_TURNED, BUT_ZERO, *REASONS.values()}
-    found |= {*_WORDS.values(), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
+    found |= {*(quantity.words for quantity in Quantity), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
     found |= {"sine", "cosine", "root", "reciprocal", "function"}
     found |= {*outcome.Outcome, "parameter", "coordinate", "body", *(told for _, _, told in JOINTS.values())}
     found |= {one.value for one in Because if isinstance(one.value, str)}
