@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from enum import Enum
+from enum import Enum, StrEnum
 from functools import partial
 from math import ceil, floor, inf, log10
 from numbers import Number
@@ -62,6 +62,17 @@ class Counted(Message):
 
     def __reduce__(self) -> tuple[Callable[..., Self], tuple[()]]:
         return partial(type(self), self.number, self.one, str(self.gaps["form"])), ()
+
+
+class Told(StrEnum):
+    """A word of files and, where that is another text, what people are ``told``: ``NAME = "word", "what is told"``."""
+
+    told: Message
+
+    def __new__(cls, word: str, told: str = "") -> Self:
+        member = str.__new__(cls, word)
+        member._value_, member.told = word, Message(told or word)
+        return member
 
 
 class Code(Enum):

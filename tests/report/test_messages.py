@@ -24,6 +24,10 @@ from mbsym.analysis.stages import NoResult
 from mbsym.batch import outcome
 from mbsym.expressions.message import GAP, Counted, Message
 from mbsym.maps import branches_curve
+from mbsym.maps.boundaries import Origin
+from mbsym.maps.branches_events import Event
+from mbsym.maps.result import Lack
+from mbsym.maps.soft_borders import Onset
 from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
@@ -252,6 +256,7 @@ def words_of_types() -> set[str]:
     found |= {f"{kind} of [[of]]" if one.of and kind != "coefficient" else kind for kind, one in CLAIMS.items()}
     found |= {BUT_TURNED, BUT_ZERO, *REASONS.values()}
     found |= {*(quantity.words for quantity in Quantity), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
+    found |= {one.told for one in (*Event, *Lack, *Onset, *Origin)} - {Event.REGULAR}
     found |= {"sine", "cosine", "root", "reciprocal", "function"}
     found |= {*outcome.Outcome, "parameter", "coordinate", "body", *(told for _, _, told in JOINTS.values())}
     found |= {one.value for one in Because if isinstance(one.value, str)}
