@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.linearisation import Subsystem
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
-    from mbsym.problems.stabilisation import Stabilisation
+    from mbsym.problems.stabilisation.result import Stabilisation
     from mbsym.problems.state_space import StateSpace
 
 

@@ -58,12 +58,12 @@ if TYPE_CHECKING:
     from mbsym.problems.claims.counterexample import Trials
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.first_order import FirstOrder
-    from mbsym.problems.invariant_sets import InvariantSets
-    from mbsym.problems.normal_forms import NormalForms
+    from mbsym.problems.invariant_sets.result import InvariantSets
+    from mbsym.problems.normal_forms.result import NormalForms
     from mbsym.problems.polynomial_integrals import Polynomials
     from mbsym.problems.reduction import Reduced
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
-    from mbsym.problems.stabilisation import Stabilisation
+    from mbsym.problems.stabilisation.result import Stabilisation
     from mbsym.problems.state_space import StateSpace
 
 T = TypeVar("T")

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical import Routh
     from mbsym.problems.claims.oscillations import SolutionInRing, ToldManifold
-    from mbsym.problems.normal_forms import NormalForms
+    from mbsym.problems.normal_forms.result import NormalForms
     from mbsym.problems.state_space import StateSpace
 
 

@@ -16,7 +16,7 @@ from mbsym.model.quantities import rate_unit
 from mbsym.model.system import INERTIAL, System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
-from mbsym.problems.stabilisation import Stabilisation
+from mbsym.problems.stabilisation.result import Stabilisation
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.enclosed import numbers
 from mbsym.problems.stability.words import Because, Word, sentence

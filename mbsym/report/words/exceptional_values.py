@@ -9,8 +9,8 @@ from flint import arb
 
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.model.system import System
-from mbsym.problems.normal_forms import Judged, Outcome, Theorem
 from mbsym.problems.normal_forms.along import Along, Special
+from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import with_theorem
 from mbsym.report.documents import nonlinear as doc
