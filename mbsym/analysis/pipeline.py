@@ -56,11 +56,11 @@ if TYPE_CHECKING:
     from mbsym.problems.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.claims import ClaimResult
     from mbsym.problems.claims.counterexample import Trials
-    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.result import Constraints
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.invariant_sets.result import InvariantSets
     from mbsym.problems.normal_forms.result import NormalForms
-    from mbsym.problems.polynomial_integrals import Polynomials
+    from mbsym.problems.polynomial_integrals.result import Polynomials
     from mbsym.problems.reduction import Reduced
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation.result import Stabilisation

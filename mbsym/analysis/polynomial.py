@@ -27,16 +27,16 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.problems.integrals import Integral
-from mbsym.problems.polynomial_integrals import (
+from mbsym.problems.polynomial_integrals.gradings import Grading, grading
+from mbsym.problems.polynomial_integrals.homogenised import (
     ZeroLevels,
     darboux_along_of,
     darboux_of,
-    linear_relations,
     other_levels_of,
     zero_levels_of,
 )
-from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
+from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
     FUNCTION,
     Cases,
@@ -48,7 +48,7 @@ from mbsym.problems.polynomial_integrals.result import (
     Relations,
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
-from mbsym.problems.symmetries import Gradients
+from mbsym.problems.symmetries.search import Gradients
 from mbsym.problems.vector_field import Transfer, put_in, vector_field
 
 if TYPE_CHECKING:

@@ -67,7 +67,7 @@ from mbsym.report.words.stabilisation_words import controllability
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.result import Constraints
     from mbsym.problems.equations import Equations
     from mbsym.report.results import Results
 

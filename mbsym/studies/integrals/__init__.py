@@ -18,7 +18,7 @@ from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Stud
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import InvariantRelations, Setting
-    from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
+    from mbsym.problems.polynomial_integrals.result import Along, Cases, DarbouxAlong, PolynomialIntegrals
     from mbsym.report.content import Block
 
 #: For ``--cases``: counted work, worth about so many seconds.
@@ -103,7 +103,7 @@ def derive(context: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.algebra.failures import NoClosedForm
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import allowed, integrals_of, invariant_relations, setting, special_relations
-    from mbsym.problems.polynomial_integrals import along_of, cases_of
+    from mbsym.problems.polynomial_integrals.homogenised import along_of, cases_of
 
     watch("polynomial integrals")
     analysis = Analysis(context.system)

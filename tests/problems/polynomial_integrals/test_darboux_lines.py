@@ -18,13 +18,10 @@ import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
 from mbsym.analysis.polynomial import special_relations
-from mbsym.problems.polynomial_integrals import (
-    darboux_along,
-    darboux_along_of,
-    darboux_of,
-    grading,
-    polynomial_integrals,
-)
+from mbsym.problems.polynomial_integrals.darboux import darboux_along
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import darboux_along_of, darboux_of
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 KINDS = (("x", "y", "z"),)
 

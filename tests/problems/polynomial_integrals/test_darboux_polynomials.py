@@ -13,16 +13,12 @@ import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
 from mbsym.analysis.polynomial import invariant_relations
-from mbsym.problems.polynomial_integrals import (
-    Obstacle,
-    cofactor_of,
-    darboux_of,
-    darboux_polynomials,
-    grading,
-    polynomial_integrals,
-)
-from mbsym.problems.polynomial_integrals.darboux import rest_means
+from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials, rest_means
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import darboux_of
 from mbsym.problems.polynomial_integrals.modular import PRIMES, lifted
+from mbsym.problems.polynomial_integrals.result import Obstacle
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 
 def planted(names=("k",)):

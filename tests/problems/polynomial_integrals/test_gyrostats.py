@@ -14,9 +14,10 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import Analysis
 from mbsym.analysis.polynomial import integrals_of, setting
-from mbsym.problems.polynomial_integrals import along_of, cases_of, grading, polynomial_integrals, zero_levels_of
-from mbsym.problems.polynomial_integrals.homogenised import _spanned, homogenised
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import _spanned, along_of, cases_of, homogenised, zero_levels_of
 from mbsym.problems.polynomial_integrals.modular import PRIMES, at_random
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 GYROSTAT = Path(__file__).parents[3] / "systems" / "heavy-gyrostat.yaml"
 

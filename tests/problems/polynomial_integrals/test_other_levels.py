@@ -11,8 +11,11 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
-from mbsym.problems.polynomial_integrals import grading, on_level, other_levels_of, polynomial_integrals
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import other_levels_of
+from mbsym.problems.polynomial_integrals.levels import on_level
 from mbsym.problems.polynomial_integrals.other_levels import _Search, _weights
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 
 def planted(c, slope=1):
