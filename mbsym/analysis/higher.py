@@ -23,8 +23,9 @@ from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
 from mbsym.model.substitution import on_one_side
-from mbsym.problems import knowledge, stability
+from mbsym.problems import knowledge
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
+from mbsym.problems.stability import problem as stability
 from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting
 from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 

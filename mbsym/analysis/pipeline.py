@@ -44,7 +44,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import Stability
 from mbsym.problems.telling import ToldSystem
 
 if TYPE_CHECKING:

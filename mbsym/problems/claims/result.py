@@ -28,7 +28,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import Stability
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm

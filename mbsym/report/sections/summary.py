@@ -17,8 +17,8 @@ from mbsym.model.system import INERTIAL, System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.stabilisation.result import Stabilisation
-from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.enclosed import numbers
+from mbsym.problems.stability.problem import Stability, SubsystemStability
 from mbsym.problems.stability.words import Because, Word, sentence
 from mbsym.report.brief import claims_counted, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
