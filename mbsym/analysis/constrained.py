@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.mechanics.states import Oracles
     from mbsym.model.system import System
-    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.result import Constraints
     from mbsym.problems.integrals import Integral
     from mbsym.problems.reactions import Reaction
 
@@ -123,7 +123,7 @@ def in_parameters(ring: Ring, x: Polynomial) -> Expression | None:
 
 def constraints_of(analysis: Analysis) -> Constraints:
     """The rows, their ranks and what they leave free."""
-    from mbsym.problems.constraints import constraints
+    from mbsym.problems.constraints.analysis import constraints
 
     if not analysis.system.speeds:
         return constraints(analysis.scene)
@@ -136,7 +136,7 @@ def constraints_of(analysis: Analysis) -> Constraints:
 def constraints_in_coordinates(analysis: Analysis) -> Constraints:
     """The same in generalised velocities, where speeds are declared: ranks and integrability are found there."""
     from mbsym.mechanics.kinematics import over_ring
-    from mbsym.problems.constraints import constraints
+    from mbsym.problems.constraints.analysis import constraints
 
     plain = analysis.system.without_speeds
     return constraints(over_ring(plain, analysis.ring))
@@ -158,7 +158,7 @@ def equations_of(analysis: Analysis) -> Equations:
         tree = equations.equations(analysis.scene, analysis.energy)
     if tied is None:
         return tree
-    from mbsym.problems.constraints import embedded_equations
+    from mbsym.problems.constraints.motion import embedded_equations
 
     try:
         embedded = embedded_equations(analysis.form, tree, tied)

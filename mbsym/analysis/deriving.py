@@ -20,13 +20,14 @@ from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
 from mbsym.model.substitution import with_free_rates
-from mbsym.problems import dissipation, energy, equilibrium, integrals, stability
+from mbsym.problems import dissipation, energy, equilibrium, integrals
 from mbsym.problems.checks import EXACT, NUMERICAL
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability import problem as stability
+from mbsym.problems.stability.problem import Stability
 from mbsym.problems.stability.verdict import undecided
 from mbsym.problems.stability.words import Because, Word
 from mbsym.problems.telling import ToldSystem, told_system
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
     from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.linearisation import Subsystem
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
-    from mbsym.problems.stabilisation import Stabilisation
+    from mbsym.problems.stabilisation.result import Stabilisation
     from mbsym.problems.state_space import StateSpace
 
 

@@ -16,8 +16,8 @@ from mbsym.problems.integrals import Integral
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.polynomial_integrals import PolynomialIntegrals
-    from mbsym.problems.symmetries import Symmetries
+    from mbsym.problems.polynomial_integrals.result import PolynomialIntegrals
+    from mbsym.problems.symmetries.search import Symmetries
 
 #: Of systems with more coordinates it is not tried: a run would wait for it.
 MOST_COORDINATES = 3

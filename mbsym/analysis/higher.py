@@ -23,8 +23,9 @@ from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
 from mbsym.model.substitution import on_one_side
-from mbsym.problems import knowledge, stability
+from mbsym.problems import knowledge
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
+from mbsym.problems.stability import problem as stability
 from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting
 from mbsym.problems.stability.words import Because, Fact, HigherOrder, Reason, Word
 
@@ -34,12 +35,13 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.expansion import OnManifold
     from mbsym.problems.dissipation import Balance
-    from mbsym.problems.normal_forms import InSymbols, Judged, NormalForms
+    from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms
 
 
 def normal_forms_of(analysis: Analysis) -> NormalForms:
     """What terms of higher order decide; with numbers where the description gives all of them."""
-    from mbsym.problems.normal_forms import InSymbols, Judged, Outcome, Theorem, Why, problem  # few ask for it
+    from mbsym.problems.normal_forms import problem  # few ask for it
+    from mbsym.problems.normal_forms.result import InSymbols, Judged, Outcome, Theorem, Why
     from mbsym.problems.stabilisation.problem import on_motion
 
     analysis = analysis.in_free_coordinates
@@ -347,7 +349,7 @@ def expanded_with(analysis: Analysis) -> tuple[bool, frozenset[str], Callable[[i
 
 def _told_by_signs(normal_form: InSymbols, signs: Signs) -> InSymbols:
     """With what may vanish at all for parameters of their signs."""
-    from mbsym.problems.normal_forms import Vanishing
+    from mbsym.problems.normal_forms.result import Vanishing
 
     region = [
         x.polynomial for x in (normal_form.trace, normal_form.product, normal_form.discriminant)

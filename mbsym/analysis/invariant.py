@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.analysis.polynomial import Setting
     from mbsym.model.system import System
-    from mbsym.problems.invariant_sets import InvariantSets
+    from mbsym.problems.invariant_sets.result import InvariantSets
     from mbsym.problems.vector_field import Transfer
 
 

@@ -44,7 +44,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import Stability
 from mbsym.problems.telling import ToldSystem
 
 if TYPE_CHECKING:
@@ -56,14 +56,14 @@ if TYPE_CHECKING:
     from mbsym.problems.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.claims import ClaimResult
     from mbsym.problems.claims.counterexample import Trials
-    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.result import Constraints
     from mbsym.problems.first_order import FirstOrder
-    from mbsym.problems.invariant_sets import InvariantSets
-    from mbsym.problems.normal_forms import NormalForms
-    from mbsym.problems.polynomial_integrals import Polynomials
+    from mbsym.problems.invariant_sets.result import InvariantSets
+    from mbsym.problems.normal_forms.result import NormalForms
+    from mbsym.problems.polynomial_integrals.result import Polynomials
     from mbsym.problems.reduction import Reduced
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
-    from mbsym.problems.stabilisation import Stabilisation
+    from mbsym.problems.stabilisation.result import Stabilisation
     from mbsym.problems.state_space import StateSpace
 
 T = TypeVar("T")

@@ -27,20 +27,13 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.problems.integrals import Integral
-from mbsym.problems.polynomial_integrals import (
-    ZeroLevels,
-    darboux_along_of,
-    darboux_of,
-    linear_relations,
-    other_levels_of,
-    zero_levels_of,
-)
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
+from mbsym.problems.polynomial_integrals.homogenised import InAnyField, ZeroLevels
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
+from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
     FUNCTION,
     Cases,
-    DarbouxAlong,
     DarbouxPolynomials,
     OtherLevels,
     PolynomialIntegrals,
@@ -48,7 +41,7 @@ from mbsym.problems.polynomial_integrals.result import (
     Relations,
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
-from mbsym.problems.symmetries import Gradients
+from mbsym.problems.symmetries.search import Gradients
 from mbsym.problems.vector_field import Transfer, put_in, vector_field
 
 if TYPE_CHECKING:
@@ -381,23 +374,11 @@ class InvariantRelations:
     others: OtherLevels | None
 
 
-def invariant_relations(there: Setting, integrals: PolynomialIntegrals, positive: Sequence[str]) -> InvariantRelations:
-    """All four, up to the degree of ``integrals``; ``positive``: parameters that are.
+def invariant_relations(there: InAnyField, positive: Sequence[str]) -> InvariantRelations:
+    """All four, up to the degree of the integrals; ``positive``: parameters that are.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
-    grading = integrals.grading
-    return InvariantRelations(
-        linear_relations(there.field, grading.weights, positive, grading.free),
-        darboux_of(integrals, there.kinds, there.known),
-        zero_levels_of(integrals, there.kinds, there.known),
-        other_levels_of(integrals, there.kinds, there.known),
-    )
-
-
-def special_relations(there: Setting, integrals: PolynomialIntegrals, low: Fraction, high: Fraction) -> DarbouxAlong:
-    """At which values of the only parameter there are more Darboux polynomials, up to the degree of ``integrals``.
-
-    Raises NoClosedForm where more monomials are coupled than the bounds allow.
-    """
-    return darboux_along_of(integrals, there.kinds, there.known, low, high)
+    field, grading = there.usual.field, there.usual.grading
+    linear = linear_relations(field, grading.weights, positive, grading.free)
+    return InvariantRelations(linear, there.darboux(), there.zero_levels(), there.other_levels())

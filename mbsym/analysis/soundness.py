@@ -9,7 +9,7 @@ from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System
 from mbsym.problems import given_system, knowledge
-from mbsym.problems.constraints import Fault, Unsound, constraints, faults
+from mbsym.problems.constraints.analysis import Fault, Unsound, constraints, faults
 
 
 def complain(system: System, complaints: Complaints) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.motion import relations
-from mbsym.problems.symmetries import Blocks, Symmetries, blocks, symmetries
+from mbsym.problems.symmetries.search import Blocks, Symmetries, blocks, symmetries
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis

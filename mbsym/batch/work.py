@@ -106,7 +106,7 @@ def _outcome(analysis: Analysis, defects: Iterable[tuple[str, NoResult]]) -> Out
 def _problem_row(analysis: Analysis, number: int) -> ProblemRow:
     from mbsym.algebra.failures import Severity
     from mbsym.analysis import PROBLEMS
-    from mbsym.problems.stability import Stability
+    from mbsym.problems.stability.problem import Stability
 
     problem, stage = PROBLEMS[number], analysis.stage(number)
     row = ProblemRow(number, problem.attribute, problem.title, "derived")

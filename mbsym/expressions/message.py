@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from enum import Enum, StrEnum
 from functools import partial
 from math import ceil, floor, inf, log10
 from numbers import Number
@@ -61,6 +62,35 @@ class Counted(Message):
 
     def __reduce__(self) -> tuple[Callable[..., Self], tuple[()]]:
         return partial(type(self), self.number, self.one, str(self.gaps["form"])), ()
+
+
+class Told(StrEnum):
+    """A word of files and, where that is another text, what people are ``told``: ``NAME = "word", "what is told"``."""
+
+    told: Message
+
+    def __new__(cls, word: str, told: str = "") -> Self:
+        member = str.__new__(cls, word)
+        member._value_, member.told = word, Message(told or word)
+        return member
+
+
+class Code(Enum):
+    """A code has its sentence for a value, with gaps ``[[1]]``, ... for data, or what makes it of them."""
+
+    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+        return getattr, (type(self), self.name)  # not all of its values are known to pickle
+
+    def text(self, *data: object) -> str:
+        """Its sentence with its gaps."""
+        return self.value if isinstance(self.value, str) else self.value(*data)
+
+    def said(self, *data: object, told: Callable[[Any], object] = lambda datum: datum) -> Message:
+        """Its sentence of the data, each in its gap as it is ``told``."""
+        text = self.text(*data)
+        if isinstance(text, Message):
+            return text
+        return Message(text, **{str(k): told(x) for k, x in enumerate(data, start=1) if f"[[{k}]]" in text})
 
 
 def worded(text: str) -> Message:

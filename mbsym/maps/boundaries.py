@@ -25,7 +25,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 from mbsym.algebra import rationals
 from mbsym.algebra.characteristic import (
@@ -44,39 +43,39 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.message import worded
+from mbsym.expressions.message import Told, worded
 from mbsym.maps.section import Section
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.linear_form import LinearSystem, is_potential, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant
 
 
-class Origin(Enum):
+class Origin(Told):
     """The condition from which a boundary polynomial comes."""
 
-    MASS = "det M"
-    CONSTANT = "constant term"
+    MASS = "det M", "det M = 0"
+    CONSTANT = "constant term", "zero root: constant term"
     LEADING = "leading coefficient"
-    HURWITZ = "Hurwitz minor"
-    MEETING = "discriminant in lambda"
-    DISCRIMINANT = "discriminant"
-    RESULTANT = "resultant"
-    STIFFNESS = "det K"
-    DAMPING = "det D"
-    UNDAMPED = "D = 0"
-    NOT_GYROSCOPIC = "G = 0"
-    POTENTIAL = "N = 0"
-    CYCLIC = "rows of cyclic coordinates"
-    ENERGY = "sign in the energy law"
+    HURWITZ = "Hurwitz minor", "imaginary roots: Hurwitz minor"
+    MEETING = "discriminant in lambda", "real roots meet: discriminant"
+    DISCRIMINANT = "discriminant", "double root: discriminant"
+    RESULTANT = "resultant", "common root: resultant"
+    STIFFNESS = "det K", "det K = 0"
+    DAMPING = "det D", "det D = 0"
+    UNDAMPED = "D = 0", "no damping: D = 0"
+    NOT_GYROSCOPIC = "G = 0", "no gyroscopic forces: G = 0"
+    POTENTIAL = "N = 0", "no circulatory forces: N = 0"
+    CYCLIC = "rows of cyclic coordinates", "cyclic coordinates set free"
+    ENERGY = "sign in the energy law", "sign that the energy depends on"
     #: Where K vanishes in the whole section: of the first term of V that does not.
-    HIGHER_ORDER = "term of higher order"
+    HIGHER_ORDER = "term of higher order", "first term of the potential energy"
     ASSUMPTION = "assumption"
     SIGN = "declared sign"
     INERTIA = "triangle inequality"
-    UNDEFINED = "division"
+    UNDEFINED = "division", "division by zero"
     #: Of numbers of equilibria.
-    SINGULAR = "singular equilibria"
-    LEAVING = "at infinity or at a border"
+    SINGULAR = "singular equilibria", "singular equilibria: bifurcation, or none that is real"
+    LEAVING = "at infinity or at a border", "equilibria at infinity or at a border, or none that is real"
 
 
 OF_EQUILIBRIA = (Origin.SINGULAR, Origin.LEAVING)

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import Any
 
 from flint import fmpq_poly
@@ -32,7 +31,7 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, echelon, null_space
 from mbsym.algebra.polynomial_systems import Residues
 from mbsym.algebra.ring import Polynomial
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, Told
 from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, joined
 from mbsym.maps.result import Cell
 from mbsym.problems.relative_equilibria.equilibria import _ChartSearch
@@ -43,17 +42,17 @@ from mbsym.problems.stability.words import LAGRANGE, ROUTH
 Element = Any  # a flint.fmpq_poly: an element of a number field
 
 
-class Event(StrEnum):
+class Event(Told):
     """What a point of the curve is at a critical value."""
 
     REGULAR = "goes on"
     FOLD = "fold"
     STEEP = "vertical tangent"
-    TRANSCRITICAL = "transcritical"
+    TRANSCRITICAL = "transcritical", "transcritical point"
     ISOLATED = "isolated point"
     PITCHFORK = "pitchfork"
-    CONTINUUM = "continuum"
-    DEGENERATE = "degenerate, not named"
+    CONTINUUM = "continuum", "infinitely many equilibria at one value"
+    DEGENERATE = "degenerate, not named", "degenerate point, not named"
 
 
 #: Of the events that are named: how many equilibria near the point on the side with fewer, and with more.

@@ -17,6 +17,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arc, Arrangement, Corner, CornerKind
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line, Zero
+from mbsym.expressions.message import Told
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.axis import Axis
 from mbsym.maps.boundaries import Boundaries, Condition
@@ -52,11 +53,11 @@ class Shape(StrEnum):
     BOX = "box"
 
 
-class Lack(StrEnum):
+class Lack(Told):
     """Why nothing is said of a cell."""
 
-    OUTSIDE = "outside of the assumptions"
-    MASSLESS = "the mass matrix is not positive definite"
+    OUTSIDE = "outside of the assumptions", "not admissible"
+    MASSLESS = "the mass matrix is not positive definite", "kinetic energy not positive definite"
     UNDEFINED = "formulas divide by zero"
     TOO_LARGE = "too large to be decided"
     WITHDRAWN = "withdrawn: the check failed"
@@ -66,8 +67,8 @@ class Lack(StrEnum):
     #: Of boxes.
     UNPROVED = "nothing is proved"
     #: Of numbers of equilibria.
-    INCOMPLETE = "the list may be incomplete"
-    FAMILIES = "infinitely many"
+    INCOMPLETE = "the list may be incomplete", "not counted: the list is not complete"
+    FAMILIES = "infinitely many", "infinitely many equilibria"
     UNCOUNTED = "not counted"
 
 

@@ -38,6 +38,7 @@ from mbsym.algebra.plane.projection import Curve, coefficients
 from mbsym.algebra.tower import Element, Tower
 from mbsym.analysis import Analysis
 from mbsym.analysis.higher import ignorable
+from mbsym.expressions.message import Told
 from mbsym.maps.images import Images
 from mbsym.maps.section import Section
 from mbsym.problems.normal_forms.along import judged_enclosed
@@ -52,14 +53,18 @@ from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 MOST_DEGREE = 2_000
 
 
-class Onset(StrEnum):
+class Onset(Told):
     """How stability is lost where a pair of roots becomes imaginary."""
 
-    SOFT = "soft"
-    HARD = "hard"
-    OPEN = "open"
+    SOFT = "soft", "soft: asymptotically stable at the border, small oscillations arise beyond"
+    HARD = "hard", "hard: unstable at the border already"
+    OPEN = "open", "open whether soft or hard: terms of third order do not decide, or are not at hand"
     #: Nothing is lost there, or that is not known.
-    NEITHER = "neither"
+    NEITHER = (
+        "neither",
+        "neither soft nor hard: roots are to the right on both sides or on none, one side is not judged, or the "
+        "equations are exactly linear",
+    )
 
 
 class Missing(StrEnum):

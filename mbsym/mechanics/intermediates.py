@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import Enum
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
@@ -19,31 +19,40 @@ from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.model.system import INERTIAL, Body, System
 
 
-class Quantity(StrEnum):
-    """What a named intermediate is; vectors and tensors are in the axes of the body they belong to."""
+class Quantity(Enum):
+    """What a named intermediate is; vectors and tensors are in the axes of the body they belong to.
 
-    DIRECTION_COSINE = "direction cosine"
-    ANGULAR_VELOCITY = "angular velocity"
-    RELATIVE_ANGULAR_VELOCITY = "angular velocity relative to the predecessor"
-    CARRIED_VELOCITY = "velocity of the connection point in the axes of the predecessor"
-    VELOCITY_ORIGIN = "velocity of the connection point"
-    VELOCITY_CENTRE = "velocity of the mass centre"
-    ANGULAR_ACCELERATION = "angular acceleration at q'' = 0"
-    CARRIED_ACCELERATION = "acceleration of the connection point in the axes of the predecessor at q'' = 0"
-    ACCELERATION = "acceleration of the connection point at q'' = 0, less gravity"
-    OUTWARD = "unit vector from the attracting centre"
-    RADIUS = "radius vector from the attracting centre"
-    PLACE = "radius vector from the expansion point of a field"
-    ALONG = "projection of the radius vector on the unit vector"
-    SPAN = "vector between the ends of a load"
-    MASS = "composite mass"
-    FIRST_MOMENT = "composite first moment"
-    INERTIA = "composite inertia"
-    UNIT_FORCE = "force that a unit acceleration takes"
-    UNIT_MOMENT = "moment that a unit acceleration takes"
-    FORCE = "force at q'' = 0"
-    MOMENT = "moment at q'' = 0"
-    COMMON = "common factor"
+    ``stem``: the letter that it would like to be called; the body's number and the component follow as indices.
+    ``words``: how its definitions are introduced.  There ``[[b]]`` is the body, ``[[p]]`` its predecessor, ``[[it]]``
+    the body with what it carries, ``[[o]]`` the expansion point, ``[[l]]`` the number of a load, ``[[common]]`` the
+    body that carries both of its ends.
+    """
+
+    DIRECTION_COSINE = "a", "Direction cosines of [[b]] relative to [[p]], by row and column"
+    ANGULAR_VELOCITY = "omega", "Angular velocity of [[b]]"
+    RELATIVE_ANGULAR_VELOCITY = "Omega", "Angular velocity of [[b]] relative to [[p]]"
+    CARRIED_VELOCITY = "v", "Velocity of the connection point of [[b]], in the axes of [[p]]"
+    VELOCITY_ORIGIN = "V", "Velocity of the connection point of [[b]]"
+    VELOCITY_CENTRE = "VC", "Velocity of the mass centre of [[b]]"
+    ANGULAR_ACCELERATION = "epsilon", "Angular acceleration of [[b]]"
+    CARRIED_ACCELERATION = "y", "Acceleration of the connection point of [[b]], in the axes of [[p]]"
+    ACCELERATION = "w", "Acceleration of the connection point of [[b]]"
+    OUTWARD = "e", "Unit vector from the attracting centre to the connection point of [[o]], in the axes of [[b]]"
+    RADIUS = "rho", "Radius vector from the attracting centre to the mass centre of [[b]]"
+    PLACE = "c", "Radius vector from the connection point of [[o]] to the mass centre of [[b]]"
+    ALONG = "p", "Projection of that radius vector on that unit vector, for [[b]]"
+    SPAN = "s", "Vector between the ends of load [[l]] (the first index), in the axes of [[common]]"
+    MASS = "mu", "Mass of [[it]]"
+    FIRST_MOMENT = "S", "Mass times radius vector of the mass centre, of [[it]]"
+    INERTIA = "J", "Inertia tensor of [[it]] about the connection point"
+    UNIT_FORCE = "u", "Force at the connection point of [[b]] required by a unit acceleration of"
+    UNIT_MOMENT = "n", "Moment about the connection point of [[b]] required by a unit acceleration of"
+    FORCE = "F", "Force that [[it]] needs beyond the loads"
+    MOMENT = "H", "Moment about the connection point that [[it]] needs beyond the loads"
+    COMMON = "z", ""
+
+    def __init__(self, stem: str, words: str) -> None:
+        self.stem, self.words = stem, words
 
 
 @dataclass(frozen=True, slots=True)

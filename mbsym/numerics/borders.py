@@ -35,7 +35,7 @@ from mbsym.numerics.planning.sizes import kinds, scales
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
 from mbsym.numerics.scenario import Incomplete, Scenario, changed
 from mbsym.numerics.trade.digits import FULL, PRECISIONS, Digits, compared, digits_of, tight
-from mbsym.problems.stability import ExactVerdicts
+from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Word
 

@@ -76,9 +76,8 @@ from mbsym.problems.integrals import ENERGY, Integral
 
 if TYPE_CHECKING:
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
-    from mbsym.problems.constraints import Constraints
     from mbsym.problems.constraints.checks import OnManifold
-    from mbsym.problems.constraints.result import Solved
+    from mbsym.problems.constraints.result import Constraints, Solved
 
 #: A matrix is inverted in closed form up to this size.
 MOST = 6

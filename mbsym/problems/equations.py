@@ -43,7 +43,8 @@ from mbsym.mechanics.variables import rate_of
 from mbsym.problems.energy import Energy
 
 if TYPE_CHECKING:
-    from mbsym.problems.constraints import Constraints, Embedded
+    from mbsym.problems.constraints.motion import Embedded
+    from mbsym.problems.constraints.result import Constraints
 
 
 @dataclass(frozen=True, repr=False)

@@ -40,7 +40,7 @@ from mbsym.algebra.matrices import Operators, added, null_vectors, reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
-from mbsym.problems.constraints import Constraints
+from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds import SpeedEquations
 from mbsym.problems.stability.linear_form import LinearSystem

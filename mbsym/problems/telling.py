@@ -35,31 +35,6 @@ from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System, acceleration_name
 from mbsym.problems.checks import STATES, agreement
 
-#: What a quantity would like to be called; the body's number and the component follow as indices.
-STEMS = {
-    Quantity.DIRECTION_COSINE: "a",
-    Quantity.ANGULAR_VELOCITY: "omega",
-    Quantity.RELATIVE_ANGULAR_VELOCITY: "Omega",
-    Quantity.CARRIED_VELOCITY: "v",
-    Quantity.VELOCITY_ORIGIN: "V",
-    Quantity.VELOCITY_CENTRE: "VC",
-    Quantity.ANGULAR_ACCELERATION: "epsilon",
-    Quantity.CARRIED_ACCELERATION: "y",
-    Quantity.ACCELERATION: "w",
-    Quantity.OUTWARD: "e",
-    Quantity.RADIUS: "rho",
-    Quantity.PLACE: "c",
-    Quantity.ALONG: "p",
-    Quantity.SPAN: "s",
-    Quantity.MASS: "mu",
-    Quantity.FIRST_MOMENT: "S",
-    Quantity.INERTIA: "J",
-    Quantity.UNIT_FORCE: "u",
-    Quantity.UNIT_MOMENT: "n",
-    Quantity.FORCE: "F",
-    Quantity.MOMENT: "H",
-    Quantity.COMMON: "z",
-}
 #: Where such a name would look like one of the system's, these letters are tried.
 SPARE = ("b", "d", "g", "h", "k", "p", "x", "B", "C", "E", "P", "Q", "W", "X", "Y", "Z", "eta", "xi", "zeta")
 
@@ -192,10 +167,10 @@ def _looks(name: str) -> tuple[str, ...]:
 def _stem(quantity: Quantity, taken: _Taken, indices: Iterable[str], used: Sequence[str] = ()) -> str:
     """The first letter under which none of the names looks like one of the system's."""
     indices = list(indices)
-    for stem in (STEMS[quantity], *SPARE):
+    for stem in (quantity.stem, *SPARE):
         if stem not in used and not any(stem + index in taken for index in indices):
             return stem
-    return free_name(STEMS[quantity] + "_", {"_".join((stem, "")) for stem in used})
+    return free_name(quantity.stem + "_", {"_".join((stem, "")) for stem in used})
 
 
 def _names(ring: Ring, equations: BodyEquations, numbers: Mapping[str, int]) -> dict[int, str]:
@@ -205,10 +180,10 @@ def _names(ring: Ring, equations: BodyEquations, numbers: Mapping[str, int]) -> 
     for number, meaning in equations.meanings.items():
         by_quantity.setdefault(meaning.quantity, []).append(number)
     names: dict[int, str] = {}
-    used: list[str] = [stem for q, stem in STEMS.items() if q in by_quantity]
+    used: list[str] = [quantity.stem for quantity in Quantity if quantity in by_quantity]
     for quantity, nodes in by_quantity.items():
         indices = {k: _indices(equations.meanings[k], numbers) for k in nodes}
-        others = [stem for stem in used if stem != STEMS[quantity]]
+        others = [stem for stem in used if stem != quantity.stem]
         stem = _stem(quantity, taken, indices.values(), others)
         used.append(stem)
         names |= {k: stem + index for k, index in indices.items()}

@@ -14,7 +14,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.letters import letters
 from mbsym.formulas.names import parts
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.stability import Stability, SubsystemStability
+from mbsym.problems.stability.problem import Stability, SubsystemStability
 from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, Requirement
 from mbsym.problems.stability.words import Word
 

@@ -10,7 +10,13 @@ from flint import fmpq, fmpz
 
 from mbsym.analysis.polynomial import InvariantRelations, Setting
 from mbsym.model.system import System
-from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, DarbouxPolynomials, PolynomialIntegrals
+from mbsym.problems.polynomial_integrals.result import (
+    Along,
+    Cases,
+    DarbouxAlong,
+    DarbouxPolynomials,
+    PolynomialIntegrals,
+)
 from mbsym.report.documents import integrals as doc
 from mbsym.report.documents.base import Write, file_of
 

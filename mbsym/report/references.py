@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import Stability
 from mbsym.problems.stability.words import (
     CHAPLYGIN,
     CHETAEV,

@@ -15,8 +15,8 @@ from mbsym.studies.study import Answer, Asked, Line, NotFit, Refusal, Study, Unf
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
-    from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.normal_forms.along import Along
+    from mbsym.problems.normal_forms.result import NormalForms
     from mbsym.report.content import Block
 
 

@@ -10,7 +10,7 @@ from mbsym.studies.request import Numbers
 from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Watch, failed, refused
 
 if TYPE_CHECKING:
-    from mbsym.problems.symmetries import Symmetries
+    from mbsym.problems.symmetries.search import Symmetries
 
 
 @dataclass(frozen=True)

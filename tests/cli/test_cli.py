@@ -17,10 +17,10 @@ from mbsym import load, loads
 from mbsym.algebra.certainty import Certainty
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
+from mbsym.maps.branches_events import Event
 from mbsym.model.claims import CLAIMS
 from mbsym.problems.stability.words import MEANINGS, Word
 from mbsym.report.maps.frame import LOOKS
-from mbsym.report.maps.words import EVENTS
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.labels import BODY as LABELS
 from mbsym.source.topics import EXAMPLES
@@ -324,7 +324,7 @@ def test_explain_knows_what_reports_say() -> None:
     """How surely a thing is known, what happens to branches, and words as they stand: plural, numbered, capital."""
     for word in (
         *Certainty,
-        *EVENTS.values(),
+        *(event.told for event in {*Event} - {Event.REGULAR}),
         "First integrals",
         "minor 2 of K",
         "lambda_2",

@@ -54,7 +54,7 @@ PLACES = {
     2: "energy.energy",
     3: "equations.equations",
     4: "equilibrium.equilibrium",
-    6: "stability.stability",
+    6: "stability.problem.stability",
     7: "integrals.integrals",
 }
 

@@ -23,7 +23,6 @@ from mbsym.maps.result import Cell, Counted, Lack
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
 from mbsym.report.documents.branches import STANDINGS
-from mbsym.report.maps.words import _CONDITIONS, LACKS
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from tests.report.readers import read_latex
@@ -189,7 +188,7 @@ def test_what_is_no_polynomial_is_refused(tmp_path: Path) -> None:
 
 def test_every_word_is_translated() -> None:
     for language in ("ru", "es"):
-        assert {("", text) for text in (*LACKS.values(), *_CONDITIONS.values())} <= messages(language).keys()
+        assert {("", one.told) for one in (*Lack, *Origin)} <= messages(language).keys()
     told = schema("equilibria_map")["properties"]["regions"]["items"]["properties"]["standing"]["enum"]
     assert told == [str(one) for one in STANDINGS]
 

@@ -24,7 +24,7 @@ from mbsym.maps.result import Cell, Map
 from mbsym.maps.section import Axis
 from mbsym.maps.slices import stack
 from mbsym.maps.soft_borders import Missing, Onset
-from mbsym.problems.normal_forms import Why
+from mbsym.problems.normal_forms.result import Why
 from mbsym.report.language import Language
 from mbsym.report.maps.figure import lettered, letters
 from mbsym.report.maps.words import onset_words

@@ -22,10 +22,12 @@ from mbsym.mechanics.constraints.states import Manifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.constraints import Constraints, Embedded, faults
 from mbsym.problems.constraints import analysis as analysis_module
+from mbsym.problems.constraints.analysis import faults
 from mbsym.problems.constraints.checks import check_embedded, check_rows
 from mbsym.problems.constraints.integrability import by_program
+from mbsym.problems.constraints.motion import Embedded
+from mbsym.problems.constraints.result import Constraints
 
 SLEIGH = """
 mbsym: 1

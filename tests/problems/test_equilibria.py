@@ -29,8 +29,8 @@ from mbsym.mechanics.charts import joints
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.numerics.scenario import exact
 from mbsym.problems.relative_equilibria.equilibria import CERTIFIED, EXACT, Equilibria, RelativeEquilibrium, equilibria
-from mbsym.problems.stability import parameter_values
 from mbsym.problems.stability.enclosed import enclosed_verdict
+from mbsym.problems.stability.problem import parameter_values
 from mbsym.report.content import Table
 from mbsym.studies.equilibria import STUDY
 from mbsym.studies.equilibria.listed import lines

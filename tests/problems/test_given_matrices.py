@@ -12,8 +12,9 @@ from conftest import SHIPPED, analysed
 import mbsym
 from mbsym.algebra.failures import GivenByMatrices
 from mbsym.analysis import Analysis, Unavailable
-from mbsym.problems import given_system, stability
+from mbsym.problems import given_system
 from mbsym.problems.checks import EXACT, NUMERICAL
+from mbsym.problems.stability import problem as stability
 
 
 def given(matrices: str, parameters: str = "{}", more: str = "") -> Analysis:

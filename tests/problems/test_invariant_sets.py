@@ -12,9 +12,10 @@ import sympy
 from conftest import SHIPPED, derived, filed
 
 import mbsym
-from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, problem
+from mbsym.problems.invariant_sets import problem
 from mbsym.problems.invariant_sets.branches import arena
 from mbsym.problems.invariant_sets.problem import invariant_sets
+from mbsym.problems.invariant_sets.result import Definiteness, Gap, Kind
 from mbsym.problems.vector_field import vector_field
 from mbsym.report.language import Language
 

@@ -11,8 +11,8 @@ from conftest import SHIPPED, derived, invoked
 
 import mbsym
 from mbsym.analysis.stages import Unavailable
-from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, StationarySet
 from mbsym.problems.invariant_sets.branches import identifiers
+from mbsym.problems.invariant_sets.result import Definiteness, Gap, Kind, StationarySet
 
 
 def value(formula, **numbers):

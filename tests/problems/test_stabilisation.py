@@ -23,9 +23,10 @@ import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.problems.checks import EXACT
-from mbsym.problems.stabilisation import Locus, Stabilisation, numbers
+from mbsym.problems.stabilisation import numbers
 from mbsym.problems.stabilisation.checks import check_stabilisation
 from mbsym.problems.stabilisation.numbers import AtValues
+from mbsym.problems.stabilisation.result import Locus, Stabilisation
 from mbsym.report.language import Language
 from mbsym.report.plain_writer import Writer
 from mbsym.report.results_json import results

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
+from mbsym.problems.invariant_sets.result import Definiteness, Gap, Kind
 from mbsym.report.messages import messages
 from mbsym.report.plain_writer import Writer
 from mbsym.report.sections import invariant_sets as section

@@ -28,9 +28,9 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.model.system import System
-from mbsym.problems.stability import parameter_values
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.problem import parameter_values
 from mbsym.problems.stability.routh import ignoring_cyclic
 from mbsym.problems.stability.symbolic import analyse
 from mbsym.problems.stability.verdict import Verdict, combine

@@ -16,7 +16,7 @@ import mbsym
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Rationals
 from mbsym.analysis import Analysis
-from mbsym.problems import stability
+from mbsym.problems.stability import problem as stability
 
 BASE = {name: F(value) for name, value in {"R": 100, "omega0": 1, "nu": 10**6, "m": 1, "mg": "1/10"}.items()}
 BODY = {"A": F(4), "B": F(5), "C": F(3), "Jx": F(1, 5), "Jy": F(3, 10), "Jz": F(1, 10)}

@@ -16,7 +16,7 @@ from conftest import SHIPPED, derived, parsed, with_letters
 import mbsym
 from mbsym.algebra.base import Lowering
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability import SubsystemStability
+from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.report.conditions import WRITTEN_OUT, InCoefficients, Shown, in_coefficients, statements
 from mbsym.report.targets import TARGETS

@@ -10,7 +10,7 @@ import pytest
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.problems.constraints import Integrability
+from mbsym.problems.constraints.result import Integrability
 from mbsym.report.language import Language
 from mbsym.report.plain_writer import Writer
 from mbsym.report.words import constraint_words, description

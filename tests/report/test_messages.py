@@ -24,6 +24,11 @@ from mbsym.analysis.stages import NoResult
 from mbsym.batch import outcome
 from mbsym.expressions.message import GAP, Counted, Message
 from mbsym.maps import branches_curve
+from mbsym.maps.boundaries import Origin
+from mbsym.maps.branches_events import Event
+from mbsym.maps.result import Lack
+from mbsym.maps.soft_borders import Onset
+from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
 from mbsym.model.constraints import KIND_NAMES
@@ -34,13 +39,12 @@ from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.methods import interface, sides, tableaux
 from mbsym.numerics.planning import kinds, plan
 from mbsym.problems.checks import HOW_EQUAL
-from mbsym.problems.claims.remarks import Remark, Said, text
+from mbsym.problems.claims.remarks import Said
 from mbsym.problems.normal_forms.result import Outcome, Theorem
 from mbsym.problems.stability import words
 from mbsym.problems.stability.linear_form import LinearSystem, kind_of
 from mbsym.problems.stability.requirements import BUT_TURNED, BUT_ZERO, Method, Place
-from mbsym.problems.stability.sentences import _SENTENCES as because
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.language import Language
 from mbsym.report.latex.writer import escaped
 from mbsym.report.maps.words import _DOUBTS
@@ -48,7 +52,7 @@ from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
 from mbsym.report.schemas import schema
 from mbsym.report.words.normal_form_words import REASONS
-from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
+from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY
 from mbsym.source.starter import JOINTS
 from mbsym.studies.simulate import PAIRS
 from mbsym.studies.study import Apart
@@ -251,17 +255,18 @@ def words_of_types() -> set[str]:
     found |= {kind_of(system) for system in systems()}
     found |= {f"{kind} of [[of]]" if one.of and kind != "coefficient" else kind for kind, one in CLAIMS.items()}
     found |= {BUT_TURNED, BUT_ZERO, *REASONS.values()}
-    found |= {*_WORDS.values(), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
+    found |= {*(quantity.words for quantity in Quantity), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
+    found |= {one.told for one in (*Event, *Lack, *Onset, *Origin)} - {Event.REGULAR}
     found |= {"sine", "cosine", "root", "reciprocal", "function"}
     found |= {*outcome.Outcome, "parameter", "coordinate", "body", *(told for _, _, told in JOINTS.values())}
-    found |= {one for one in because.values() if isinstance(one, str)}
+    found |= {one.value for one in Because if isinstance(one.value, str)}
     found |= {str(called(key)) for key in properties(schema("results"))}
     found |= {*Standing, *Doubt, *Measure, *Lacking, *Certainty, *TITLES.values(), *of_runs()}
     found |= {
         *_DOUBTS.values(),
         *(x for name, x in vars(branches_curve).items() if name.endswith(("_OPEN", "_UNDECIDED"))),
     }
-    found |= {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}
+    found |= {code.text(*data) for code in Said for data in DATA}
     return {x for x in found - {"", Place.SUFFICIENT.value, Method.NONE.value} if said.has_words(x)}
 
 
@@ -321,13 +326,6 @@ def systems() -> Iterator[LinearSystem]:
 
 
 DATA = ((1, "", ""), (2, "", ""), ("x", ""), ("", ""), ("stable", True), ("stable", False))
-
-
-def _takes(code: Said, data: tuple[object, ...]) -> bool:
-    try:
-        return bool(text(Remark(code, data)))
-    except TypeError:
-        return False
 
 
 @pytest.mark.parametrize("name", OTHERS)

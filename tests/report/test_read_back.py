@@ -29,7 +29,7 @@ from mbsym.formulas import latex, mathml
 from mbsym.formulas.latex import LatexNames
 from mbsym.formulas.mathml import MathNames
 from mbsym.formulas.wolfram import wolfram_names
-from mbsym.problems.stability import SubsystemStability
+from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.problems.stability.words import Word
 from mbsym.report import conditions

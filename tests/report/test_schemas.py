@@ -20,7 +20,7 @@ from mbsym.algebra.failures import Limit
 from mbsym.batch.summary_json import schema as of_batches
 from mbsym.numerics.conservation import Doubt
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED
-from mbsym.problems.normal_forms import Theorem
+from mbsym.problems.normal_forms.result import Theorem
 from mbsym.problems.stability.words import THEOREMS, Because, Word
 from mbsym.report.documents.base import From, Part, told_apart_by, words, written
 from mbsym.report.results_json import render

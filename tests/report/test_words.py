@@ -14,7 +14,6 @@ from terminal import told
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.problems.stability import sentences
 from mbsym.problems.stability.words import Word
 from mbsym.report.targets import TARGETS
 
@@ -99,7 +98,6 @@ def test_tables_and_files_have_the_same_words(tmp_path: Path) -> None:
 def test_a_word_fits_into_a_line_and_is_no_other_one() -> None:
     assert all(len(word) <= 66 for word in Word)
     assert len({word.casefold() for word in Word}) == len(Word)
-    assert not hasattr(sentences, "short")
 
 
 def test_energy_is_one_thing_in_every_output(tmp_path: Path) -> None:

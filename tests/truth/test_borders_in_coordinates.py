@@ -12,8 +12,7 @@ import pytest
 
 import mbsym
 from mbsym.analysis.judge import Judge
-from mbsym.problems.stability.sentences import explanation
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Word, explanation
 
 #: Loads of a unit mass at x, and what is true of x = 0.
 ON_A_LINE = {

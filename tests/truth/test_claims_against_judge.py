@@ -25,9 +25,9 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.analysis.judge import Judge
-from mbsym.problems import stability
 from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.problems.claims.regions import Inequality, Region
+from mbsym.problems.stability import problem as stability
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Word
 from mbsym.report.words.claims import claim_line

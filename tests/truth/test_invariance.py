@@ -20,7 +20,7 @@ from plain_vectors import inverse
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.problems.stability import ExactVerdicts
+from mbsym.problems.stability.problem import ExactVerdicts
 
 MANY = int(os.environ.get("MBSYM_INVARIANCE", "30"))
 #: Random parameters at which the conditions are compared.

@@ -26,7 +26,7 @@ from plain_vectors import inverse
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.problems.stability import ExactVerdicts
+from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.words import Because, Word
 from tests.truth.test_invariance import polynomial
 

@@ -9,7 +9,7 @@ from terminal import told
 
 import mbsym
 from mbsym.analysis.judge import Judge
-from mbsym.problems.normal_forms import Outcome, Why
+from mbsym.problems.normal_forms.result import Outcome, Why
 from mbsym.problems.stability.words import Because, Word
 from mbsym.report.words.normal_form_words import REASONS
 

@@ -7,7 +7,7 @@ from truth.known_systems import KNOWN
 from truth.statements import TRUE_OF, Known, false_verdict
 
 import mbsym
-from mbsym.problems.normal_forms import Outcome
+from mbsym.problems.normal_forms.result import Outcome
 
 #: What is no statement about stability in Lyapunov's sense.
 OPEN = (Outcome.UNDECIDED, Outcome.FORMAL, Outcome.MOST)

@@ -1,4 +1,4 @@
-"""What a run may do without: one vocabulary of the ledger and the plan, and the options that switch each kind.
+"""What a run may do without: one vocabulary of the ledger and the plan.
 
 A kind that changes what is integrated has a switch: an option of ``mbsym simulate`` that keeps what was left out, or
 takes it out, by hand.  The others are written differently, or never written, for the same numbers.
@@ -6,7 +6,6 @@ takes it out, by hand.  The others are written differently, or never written, fo
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
 
 
@@ -45,33 +44,3 @@ class Kind(StrEnum):
     STEADY = "parameters only"
     ZEROS = "values that are zero"
     VALUES = "values put in"
-
-
-#: Kinds that change what is integrated, with the option that settles each by hand.
-SWITCHES: Mapping[Kind, str] = {
-    Kind.GRAVITY: "--gravity",
-    Kind.LINEARITY: "--linear",
-    Kind.LEFT_OUT: "--without",
-    Kind.MASSES: "--without",
-    Kind.RESTING: "--whole",
-    Kind.PLANE: "--whole",
-    Kind.PARTS: "--whole",
-    Kind.WELDED: "--whole",
-}
-
-#: Kinds that change the way of a run, with the option that settles each; one motion has one kernel.
-WAYS: Mapping[Kind, str | None] = {
-    Kind.METHOD: "--method",
-    Kind.FINENESS: "--tolerance",
-    Kind.SCALAR: "--arithmetic",
-    Kind.KERNEL: None,
-}
-
-#: Kinds that change nothing of a motion but rounding: the same equations, with fewer instructions or none to write.
-SAME_EQUATIONS = frozenset(
-    (
-        *(Kind.MASSLESS, Kind.POINTS, Kind.AXES, Kind.TURNS, Kind.CYCLIC, Kind.SKEW, Kind.DROPPED, Kind.ENTRIES),
-        *(Kind.SUBSYSTEMS, Kind.NOT_ASKED, Kind.SYMMETRY, Kind.SPARSITY, Kind.ROUTE, Kind.DEAD, Kind.STEADY),
-        *(Kind.ZEROS, Kind.VALUES),
-    )
-)

@@ -37,9 +37,8 @@ from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.remarks import Remark, Said, named, said, words
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Flaw, Verdict, weakest
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Word, with_theorem
 
 _BODIES = Message(", with the triangle inequalities of the inertias")
 _BUT_EQUALITY = Message(", but for the case of equality")

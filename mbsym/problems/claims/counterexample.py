@@ -39,9 +39,8 @@ from mbsym.model.admissibility import ROUNDING, body_violation
 from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.problems.stability.exact import is_positive
-from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Flaw, Verdict
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Word, with_theorem
 
 #: Parameters, and states, that are tried.
 SAMPLES, STATES = 400, 40

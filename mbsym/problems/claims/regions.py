@@ -26,7 +26,7 @@ from mbsym.model.claims import Claim
 from mbsym.problems.claims.remarks import Remark, Said, letter, named, said
 from mbsym.problems.claims.result import Derived, in_parameters, on_relations
 from mbsym.problems.knowledge import signs as signs_now
-from mbsym.problems.stability import SubsystemStability
+from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.problem import in_parameters as of_parameters
 from mbsym.problems.stability.requirements import (
     Case,

@@ -28,13 +28,13 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import Stability
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical import Routh
     from mbsym.problems.claims.oscillations import SolutionInRing, ToldManifold
-    from mbsym.problems.normal_forms import NormalForms
+    from mbsym.problems.normal_forms.result import NormalForms
     from mbsym.problems.state_space import StateSpace
 
 

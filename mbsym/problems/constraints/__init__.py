@@ -15,7 +15,3 @@ seen at several points.
 Sources: F. R. Gantmacher, Lectures in Analytical Mechanics, sections 1-3 (constraints, virtual displacements); Ju. I.
 Neimark & N. A. Fufaev, Dynamics of Nonholonomic Systems, chapter 1 (integrability by the Pfaffian forms).
 """
-
-from mbsym.problems.constraints.analysis import Fault, Unsound, constraints, faults
-from mbsym.problems.constraints.motion import Embedded, embedded_equations
-from mbsym.problems.constraints.result import Constraints, Demanded, Integrability, Redundant, Solved

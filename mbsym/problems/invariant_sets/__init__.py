@@ -36,17 +36,3 @@ Example:
     >>> [one.kind.value for one in clebsch.families[0].sets].count("steady motions") >= 3
     True
 """
-
-from __future__ import annotations
-
-from mbsym.problems.invariant_sets.result import (
-    Definiteness,
-    Family,
-    FirstApproximation,
-    Gap,
-    InvariantSets,
-    Kind,
-    Relation,
-    SecondVariation,
-    StationarySet,
-)

@@ -36,17 +36,3 @@ Example:
     >>> print(point.at_values.outcome, "by", point.at_values.theorem)
     stable by Arnold-Moser
 """
-
-from __future__ import annotations
-
-from mbsym.problems.normal_forms.result import (
-    Focus,
-    InSymbols,
-    Judged,
-    NormalForms,
-    Outcome,
-    Resonance,
-    Theorem,
-    Vanishing,
-    Why,
-)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -42,54 +43,135 @@ from mbsym.problems.polynomial_integrals.values import along
 MOST_WEIGHT = 2
 
 
-def cases_of(
-    usual: result.PolynomialIntegrals,
-    kinds: Sequence[Sequence[str]],
-    known: Sequence[tuple[str, Any]],
-    positive: Sequence[str],
-    budget: float,
-) -> result.Cases:
-    """``cases`` of any field with at most one relation: of ``kinds`` of variables and ``known`` integrals.
+#: What the name of an integral gets whose constant is left out: where it is zero the integral has another value.
+WITHOUT = ", less a constant"
 
-    Raises NoClosedForm where the larger field has relations that are not homogeneous, or too many families.
+
+@dataclass(frozen=True)
+class ZeroLevels:
+    """What holds where an integral is zero, one item for each; ``weights`` as in ``Along``."""
+
+    levels: tuple[result.OnLevel, ...]
+    weights: tuple[int, ...] | None
+
+
+@dataclass(frozen=True)
+class InAnyField:
+    """What is looked for beside the ``usual`` integrals of a field with at most one relation.
+
+    Where it is not quasi-homogeneous that is done in the larger field: weights are equal within each of ``kinds`` of
+    variables, ``known`` are integrals by their names.  Then NoClosedForm is raised where more monomials are coupled
+    than the bounds allow.
     """
-    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        return cases(usual, positive, budget)
-    larger = _larger(usual, kinds, known)
-    if larger is None:
-        raise NoClosedForm(
-            "special parameters are looked for where there is one unit vector or angle at most, no root, and where no "
-            "constraint ties positions"
+
+    usual: result.PolynomialIntegrals
+    kinds: Sequence[Sequence[str]]
+    known: Sequence[tuple[str, Any]]
+
+    @property
+    def _as_it_is(self) -> bool:
+        """Whether the field needs no larger one."""
+        usual = self.usual
+        return usual.grading.homogeneous and (usual.grading.free or not usual.field.relations)
+
+    @cached_property
+    def _larger(self) -> result.PolynomialIntegrals | None:
+        """The integrals of the larger field; None where its relations are not integrals by their homogeneous parts."""
+        field, larger_grading = homogenised(self.usual.field, self.kinds)
+        if field.relations and not larger_grading.free:
+            return None
+        listed = [(result.UNITY, field.generator(field.variables[-1]))]
+        for title, f in self.known:
+            constant = any(not any(m[len(field.parameters) :]) for m in f.monoms())
+            listed.append((title + WITHOUT if constant else title, _filled(field, f, larger_grading.weights)))
+        return polynomial_integrals(field, larger_grading, self.usual.degree, listed)
+
+    def cases(self, positive: Sequence[str], budget: float) -> result.Cases:
+        """``cases``; raises NoClosedForm where relations of the larger field are not homogeneous, too."""
+        if self._as_it_is:
+            return cases(self.usual, positive, budget)
+        larger = self._larger
+        if larger is None:
+            raise NoClosedForm(
+                "special parameters are looked for where there is one unit vector or angle at most, no root, and where "
+                "no constraint ties positions"
+            )
+        special, down = cases(larger, positive, budget), _Down(larger)
+        return replace(special, usual=self.usual, cases=tuple(down.case(case) for case in special.cases))
+
+    def along(self, low: Fraction, high: Fraction) -> result.Along:
+        """``along``; raises what that raises, and NoClosedForm as ``cases`` does."""
+        if self._as_it_is:
+            return along(self.usual, low, high)
+        larger = self._larger
+        if larger is None:
+            raise NoClosedForm(
+                "special values are looked for where there is one unit vector or angle at most, no root, and where no "
+                "constraint ties positions"
+            )
+        listing, down = along(larger, low, high), _Down(larger)
+        values = [_new_at_one(larger, value, down) for value in listing.values]
+        fresh = tuple(value for value in values if value.integrals or value.levels)
+        return replace(listing, values=fresh, weights=larger.grading.weights[:-1])
+
+    def zero_levels(self) -> ZeroLevels | None:
+        """``on_level`` for all ``levels``; None of fields with other relations, which are not looked at.
+
+        In the larger field integrals that are products are left out: one factor may be zero alone.
+        """
+        usual = self.usual
+        if self._as_it_is:
+            return ZeroLevels(tuple(on_level(usual, level) for level in levels(usual)), None)
+        larger = self._larger
+        if larger is None:
+            return None
+        down, there = _Down(larger), at_random(usual.field, PRIMES[0], "levels at one")
+        pairs = [(one.weight, there.terms(down.polynomial(one.polynomial))) for one in larger.generators]
+        pairs = [(weight, terms) for weight, terms in pairs if any(any(m) for m in terms)]  # that of the constant is 1
+        on_levels = []
+        for one in filter(_irreducible, levels(larger)):
+            at = on_level(larger, one)
+            zero = there.terms(down.polynomial(one.polynomial))
+            fresh = [
+                (w, f)
+                for w, f in ((w, primitive(usual.field, down.polynomial(f))) for w, f in at.integrals)
+                if not _spanned(there, there.terms(f), zero, pairs, usual.degree)
+            ]
+            on_levels.append(result.OnLevel(down.generator(one), tuple(fresh), at.counts))
+        return ZeroLevels(tuple(on_levels), larger.grading.weights[:-1])
+
+    def other_levels(self) -> result.OtherLevels | None:
+        """``other_levels``; None of fields with other relations, which are not looked at."""
+        usual, lengths = self.usual, [generator for generator in self.usual.generators if generator.by_itself]
+        if self._as_it_is:  # where the weight of a length is beyond the degree there is nothing for any length
+            return other_levels(usual, lengths[0] if lengths else None)
+        larger = self._larger
+        if larger is None:
+            return None
+        (unity,) = [generator for generator in larger.generators if generator.name == result.UNITY]
+        outcome, down = other_levels(larger, unity), _Down(larger)
+        return replace(outcome, levels=tuple(map(down.other, outcome.levels)), weights=larger.grading.weights[:-1])
+
+    def darboux(self) -> result.DarbouxPolynomials:
+        """``darboux_polynomials``; of fields with other relations that they were not looked for."""
+        larger = None if self._as_it_is else self._larger
+        return darboux_polynomials(self.usual) if larger is None else _Down(larger).darboux(darboux_polynomials(larger))
+
+    def darboux_along(self, low: Fraction, high: Fraction) -> result.DarbouxAlong:
+        """``darboux_along``; of fields with other relations that nothing was looked for.  Raises what that raises."""
+        larger = None if self._as_it_is else self._larger
+        if larger is None:
+            return darboux_along(self.usual, low, high)
+        listing, down = darboux_along(larger, low, high), _Down(larger)
+        return replace(
+            listing,
+            general=down.darboux(listing.general),
+            values=tuple(
+                replace(value, field=down.field(value.field), polynomials=tuple(map(down.factor, value.polynomials)))
+                for value in listing.values
+            ),
+            square=tuple(map(down.polynomial, listing.square)),
         )
-    special = cases(larger, positive, budget)
-    down = _Down(larger.field.variables[-1])
-    return replace(special, usual=usual, cases=tuple(down.case(case) for case in special.cases))
-
-
-def along_of(
-    usual: result.PolynomialIntegrals,
-    kinds: Sequence[Sequence[str]],
-    known: Sequence[tuple[str, Any]],
-    low: Fraction,
-    high: Fraction,
-) -> result.Along:
-    """``along`` of any field with at most one relation.
-
-    Raises what ``along`` raises, NoClosedForm where the larger field has relations that are not homogeneous.
-    """
-    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        return along(usual, low, high)
-    larger = _larger(usual, kinds, known)
-    if larger is None:
-        raise NoClosedForm(
-            "special values are looked for where there is one unit vector or angle at most, no root, and where no "
-            "constraint ties positions"
-        )
-    listing = along(larger, low, high)
-    down = _Down(larger.field.variables[-1])
-    values = [_new_at_one(larger, value, down) for value in listing.values]
-    fresh = tuple(value for value in values if value.integrals or value.levels)
-    return replace(listing, values=fresh, weights=larger.grading.weights[:-1])
 
 
 def _new_at_one(larger: result.PolynomialIntegrals, raised: result.Special, down: _Down) -> result.Special:
@@ -114,66 +196,6 @@ def _new_at_one(larger: result.PolynomialIntegrals, raised: result.Special, down
     return replace(special, integrals=fresh, levels=tuple(on))
 
 
-@dataclass(frozen=True)
-class ZeroLevels:
-    """What holds where an integral is zero, one item for each; ``weights`` as in ``Along``."""
-
-    levels: tuple[result.OnLevel, ...]
-    weights: tuple[int, ...] | None
-
-
-def zero_levels_of(
-    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
-) -> ZeroLevels | None:
-    """``on_level`` for all ``levels`` of any field with at most one relation; None of others, which are not looked at.
-
-    Where the field is not quasi-homogeneous, integrals that are products are left out: one factor may be zero alone.
-
-    Raises NoClosedForm where more monomials are coupled than the bounds allow.
-    """
-    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        return ZeroLevels(tuple(on_level(usual, level) for level in levels(usual)), None)
-    larger = _larger(usual, kinds, known)
-    if larger is None:
-        return None
-    down = _Down(larger.field.variables[-1])
-    there = at_random(usual.field, PRIMES[0], "levels at one")
-    pairs = [(generator.weight, there.terms(down.polynomial(generator.polynomial))) for generator in larger.generators]
-    pairs = [(weight, terms) for weight, terms in pairs if any(any(m) for m in terms)]  # that of the constant is 1
-    on_levels = []
-    for one in filter(_irreducible, levels(larger)):
-        at = on_level(larger, one)
-        zero = there.terms(down.polynomial(one.polynomial))
-        fresh = [
-            (w, f)
-            for w, f in ((w, primitive(usual.field, down.polynomial(f))) for w, f in at.integrals)
-            if not _spanned(there, there.terms(f), zero, pairs, usual.degree)
-        ]
-        on_levels.append(result.OnLevel(down.generator(one), tuple(fresh), at.counts))
-    return ZeroLevels(tuple(on_levels), larger.grading.weights[:-1])
-
-
-def other_levels_of(
-    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
-) -> result.OtherLevels | None:
-    """``other_levels`` of any field with at most one relation; None of others, which are not looked at.
-
-    Raises NoClosedForm where more monomials are coupled than the bounds allow.
-    """
-    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        lengths = [generator for generator in usual.generators if generator.by_itself]
-        if usual.field.relations and not lengths:  # its weight is beyond the degree: with any length there is nothing
-            return other_levels(usual, None)
-        return other_levels(usual, lengths[0] if lengths else None)
-    larger = _larger(usual, kinds, known)
-    if larger is None:
-        return None
-    (unity,) = [generator for generator in larger.generators if generator.name == result.UNITY]
-    outcome = other_levels(larger, unity)
-    down = _Down(larger.field.variables[-1])
-    return replace(outcome, levels=tuple(map(down.other, outcome.levels)), weights=larger.grading.weights[:-1])
-
-
 def _irreducible(generator: result.Generator) -> bool:
     """Whether a polynomial is no product over QQ of others; numbers do not count."""
     return sum(power for _, power in irreducible_factors(generator.polynomial)[1]) == 1
@@ -193,69 +215,6 @@ def _spanned(
     columns = sorted({m for row in (*rows, f) for m in row} | set(reduce(f)), reverse=True)
     before, _ = echelon(rows, columns, there.prime)
     return len(echelon([*before, reduce(f)], columns, there.prime)[0]) == len(before)
-
-
-def darboux_of(
-    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
-) -> result.DarbouxPolynomials:
-    """``darboux_polynomials`` of any field with at most one relation; of others that they were not looked for.
-
-    Raises NoClosedForm where more monomials are coupled than the bounds allow.
-    """
-    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        return darboux_polynomials(usual)
-    larger = _larger(usual, kinds, known)
-    if larger is None:
-        return darboux_polynomials(usual)
-    polynomials = darboux_polynomials(larger)
-    return _Down(larger.field.variables[-1]).darboux(polynomials)
-
-
-def darboux_along_of(
-    usual: result.PolynomialIntegrals,
-    kinds: Sequence[Sequence[str]],
-    known: Sequence[tuple[str, Any]],
-    low: Fraction,
-    high: Fraction,
-) -> result.DarbouxAlong:
-    """``darboux_along`` of any field with at most one relation; of others that nothing was looked for.
-
-    Raises what ``darboux_along`` raises.
-    """
-    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        return darboux_along(usual, low, high)
-    larger = _larger(usual, kinds, known)
-    if larger is None:
-        return darboux_along(usual, low, high)
-    listing = darboux_along(larger, low, high)
-    down = _Down(larger.field.variables[-1])
-    return replace(
-        listing,
-        general=down.darboux(listing.general),
-        values=tuple(
-            replace(value, field=down.field(value.field), polynomials=tuple(map(down.factor, value.polynomials)))
-            for value in listing.values
-        ),
-        square=tuple(map(down.polynomial, listing.square)),
-    )
-
-
-#: What the name of an integral gets whose constant is left out: where it is zero the integral has another value.
-WITHOUT = ", less a constant"
-
-
-def _larger(
-    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
-) -> result.PolynomialIntegrals | None:
-    """The integrals of the larger field; None where its relations are not integrals by their homogeneous parts."""
-    field, larger_grading = homogenised(usual.field, kinds)
-    if field.relations and not larger_grading.free:
-        return None
-    listed = [(result.UNITY, field.generator(field.variables[-1]))]
-    for title, f in known:
-        constant = any(not any(m[len(field.parameters) :]) for m in f.monoms())
-        listed.append((title + WITHOUT if constant else title, _filled(field, f, larger_grading.weights)))
-    return polynomial_integrals(field, larger_grading, usual.degree, listed)
 
 
 def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple[PolynomialField, Grading]:
@@ -327,8 +286,8 @@ def _filled(field: PolynomialField, f: Any, weights: Sequence[int]) -> Any:
 class _Down:
     """What was found at h = 1."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    def __init__(self, larger: result.PolynomialIntegrals) -> None:
+        self.name = larger.field.variables[-1]
 
     def case(self, one: result.Case) -> result.Case:
         return result.Case(tuple(map(self.polynomial, one.conditions)), self.special(one.special))

@@ -73,7 +73,7 @@ from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
 from mbsym.problems.stability.words import Because, Word
 
 if TYPE_CHECKING:
-    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.result import Constraints
 
 __all__ = [
     "CERTIFIED",
@@ -304,7 +304,7 @@ def rank_of(first: Rest) -> int | None:
 
 
 def _constraints(first: Rest) -> Constraints:
-    from mbsym.problems.constraints import constraints  # most systems have none
+    from mbsym.problems.constraints.analysis import constraints  # most systems have none
 
     plain = first.system.without_speeds
     return constraints(over_ring(plain, first.ring))

@@ -48,8 +48,7 @@ from mbsym.mechanics.states import SEED
 from mbsym.model.system import velocity_name
 from mbsym.problems import energy as energies
 from mbsym.problems import equations
-from mbsym.problems.constraints import embedded_equations
-from mbsym.problems.constraints.motion import oscillating_position
+from mbsym.problems.constraints.motion import embedded_equations, oscillating_position
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.relative_equilibria.place import PRECISION, Place
 from mbsym.problems.relative_equilibria.verdict import has_energy, smallness

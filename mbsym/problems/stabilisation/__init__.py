@@ -33,18 +33,3 @@ Example:
     >>> pole.control[0].rank.full, pole.least
     (True, (('F',),))
 """
-
-from __future__ import annotations
-
-from mbsym.problems.stabilisation.result import (
-    Control,
-    Dissipation,
-    EnergyFunction,
-    Feedback,
-    Gyroscopic,
-    Locus,
-    Motion,
-    Rank,
-    Region,
-    Stabilisation,
-)

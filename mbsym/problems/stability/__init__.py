@@ -52,16 +52,3 @@ Example:
     >>> pendulum.stability.verdict.word, pendulum.stability.verdict.theorem
     ('asymptotically stable', 'Kelvin-Chetaev')
 """
-
-from __future__ import annotations
-
-from mbsym.problems.stability.problem import (
-    ExactVerdicts,
-    Stability,
-    SubsystemStability,
-    because,
-    of_one_energy,
-    parameter_values,
-    stability,
-    with_verdict,
-)

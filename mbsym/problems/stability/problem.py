@@ -40,10 +40,9 @@ from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cy
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
 from mbsym.problems.stability.requirements import Cell, Lift, Requirement, cells_of, everywhere, joined
-from mbsym.problems.stability.sentences import named
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
-from mbsym.problems.stability.words import Because, Fact, Reason, Word
+from mbsym.problems.stability.words import Because, Fact, Reason, Word, named
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction

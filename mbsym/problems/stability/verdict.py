@@ -28,7 +28,6 @@ from enum import Enum, auto
 
 from mbsym.expressions.message import joined
 from mbsym.problems.displacements import Basis
-from mbsym.problems.stability import sentences
 from mbsym.problems.stability.words import (
     BEYOND_LINEAR,
     LAGRANGE,
@@ -41,6 +40,7 @@ from mbsym.problems.stability.words import (
     Reason,
     Word,
     applying,
+    explanation,
     implied,
     reason_of,
 )
@@ -182,7 +182,7 @@ class Verdict:
     @property
     def explanation(self) -> str:
         """The reasons in sentences."""
-        return sentences.explanation(self.reasons)
+        return explanation(self.reasons)
 
     def because(self, code: Because) -> bool:
         return any(reason.code is code for reason in self.reasons)

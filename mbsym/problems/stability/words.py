@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass
-from enum import Enum, StrEnum, auto
+from enum import Enum, StrEnum, auto, member, unique
+from typing import TYPE_CHECKING
+
+from mbsym.expressions.message import Code, Message, enumerated, joined
+
+if TYPE_CHECKING:
+    from mbsym.formulas.formula import Formula
 
 
 class Word(StrEnum):
@@ -112,104 +118,258 @@ CONDITIONS = {
 }
 
 
-# Why a verdict is what it is, as codes with data; ``sentences`` puts them into words.
+# Why a verdict is what it is, as codes with data.
 
 
-class Because(Enum):
+def _to_the_right(number: int) -> Message:
+    if number == 1:
+        return Message("1 root with positive real part.")
+    return Message("[[count]] roots with positive real part.", count=number)
+
+
+def _integrals(*names: str) -> Message:
+    if not names:
+        return Message(
+            "A combination of first integrals is stationary, and its second variation is definite where they keep "
+            "their values: it makes a Lyapunov function of the nonlinear system."
+        )
+    return Message(
+        "A combination of integrals ([[names]]) is stationary, and its second variation is definite where they keep "
+        "their values: it makes a Lyapunov function of the nonlinear system.",
+        names=enumerated(names),
+    )
+
+
+def _order_decides(order: int, condition: Formula, word: Word) -> Message:
+    return Message(
+        "Terms of order [[order]] decide: it is [[word]] where [[condition]] > 0, and unstable where that is < 0.",
+        order=order,
+        word=Message(word),
+        condition=condition,
+    )
+
+
+@unique
+class Because(Code):
     """A code; what stands in brackets are its data.  The order is that in which several are told."""
 
     # of theorems
-    RIGHT_ROOTS = auto()  # (how many)
-    RIGHT_ROOT = auto()
-    REAL_ROOT = auto()
-    RIGHT_BY_TRACE = auto()
-    DESTROYED = auto()
-    ODD_DEGREE = auto()
-    ODD_DEGREE_REMAINS = auto()
-    COMPLETE = auto()
-    COMPLETE_BUT_CYCLIC = auto()
-    LEFT = auto()
-    LEFT_BUT_CYCLIC = auto()
-    TURNED_DECAYS = auto()
-    STEADY_DECAYS = auto()
-    OTHER_LEAF = auto()
-    FOLLOWS_ONE = auto()
-    FOLLOWING = auto()
-    MINIMUM = auto()
-    MINIMUM_AND_DISSIPATION = auto()
-    MINIMUM_BUT_CYCLIC = auto()
-    MINIMUM_AND_DISSIPATION_BUT_CYCLIC = auto()
-    UNDAMPED_MOTION = auto()  # (coordinates)
-    INTEGRALS = auto()  # (which)
-    INTEGRAL_HOLDS = auto()  # (coordinate, integral)
-    LINEAR_BOUNDED = auto()
-    LINEAR_SHIFTED = auto()
-    LINEAR_GROWS = auto()
-    LINEAR_DRIFTS = auto()
-    LINEAR_GYROSCOPIC = auto()
-    HIGHER_MINIMUM = auto()  # (order)
-    HIGHER_MINIMUM_AND_COMPLETE = auto()  # (order)
-    NO_MINIMUM = auto()  # (order)
-    ENERGY_LOST = auto()
-    ENERGY_GAINED = auto()
-    NO_FORCES = auto()
-    ALONG_RESTS = auto()  # (dimensions)
-    FEWER_CONSTRAINTS = auto()
-    TERMS_OF_HIGHER_ORDER = auto()
+    RIGHT_ROOTS = member(_to_the_right)  # (how many)
+    RIGHT_ROOT = "A root with positive real part."
+    REAL_ROOT = "K is not positive semidefinite: a real positive root."
+    RIGHT_BY_TRACE = "Without dissipation the roots sum to zero, but they are not symmetric: some lie to the right."
+    DESTROYED = "Complete dissipation, and K is not positive definite."
+    ODD_DEGREE = "$\\det K < 0$: an odd degree of instability."
+    ODD_DEGREE_REMAINS = "$\\det K < 0$: an odd degree of instability, which gyroscopic forces cannot remove."
+    COMPLETE = "$K > 0$ and complete dissipation."
+    COMPLETE_BUT_CYCLIC = "Without the cyclic coordinates $K > 0$, and dissipation is complete."
+    LEFT = "All roots have negative real parts."
+    LEFT_BUT_CYCLIC = "All roots but the zero ones of the cyclic coordinates have negative real parts."
+    TURNED_DECAYS = (
+        "All roots have negative real parts but those of the steady spins about other directions of space: a disturbed "
+        "motion tends to a steady spin about an axis near by, and every variable that does not change when everything "
+        "is turned in space tends to its value there."
+    )
+    STEADY_DECAYS = (
+        "All roots have negative real parts but the zero ones, which are as many as the steady motions near by have "
+        "dimensions: a disturbed motion tends to one of these, and coordinates on which no equation depends may end "
+        "elsewhere."
+    )
+    OTHER_LEAF = (
+        "A disturbance that changes the relations which the integrable velocity constraints keep does not decay: the "
+        "motion tends to one near by, with other values of them."
+    )
+    FOLLOWS_ONE = (
+        "Along every motion the velocities are functions of one position (integrals of Chaplygin, without a closed "
+        "form), and this position oscillates as in a system of one degree of freedom."
+    )
+    FOLLOWING = (
+        "Along every motion the velocities are functions of one position (integrals of Chaplygin, without a closed "
+        "form), and while that rests these velocities are constant."
+    )
+    MINIMUM = "$K > 0$: the (changed) potential energy has a strict minimum."
+    MINIMUM_AND_DISSIPATION = (
+        "$K > 0$ and $D \\geq 0$: the energy does not grow, and the (changed) potential energy has a strict minimum."
+    )
+    MINIMUM_BUT_CYCLIC = (
+        "Without the cyclic coordinates $K > 0$: the (changed) potential energy has a strict minimum in the others."
+    )
+    MINIMUM_AND_DISSIPATION_BUT_CYCLIC = (
+        "Without the cyclic coordinates $K > 0$, and $D \\geq 0$: the energy does not grow, and the (changed) "
+        "potential energy has a strict minimum in the others."
+    )
+    UNDAMPED_MOTION = "In first approximation motions of [[1]] stay undamped."  # (coordinates)
+    INTEGRALS = member(_integrals)  # (which)
+    INTEGRAL_HOLDS = (  # (coordinate, integral)
+        "The potential energy is the same at every position, so that the energy keeps velocities small; an integral "
+        "([[2]]) whose value at rest varies with [[1]] keeps [[1]] near its value."
+    )
+    LINEAR_BOUNDED = (
+        "The equations of motion are exactly linear: no root has a positive real part, and those on the imaginary axis "
+        "are semisimple, so that every disturbed motion stays near."
+    )
+    LINEAR_SHIFTED = (
+        "The equations of motion are exactly linear: but for shifts on which they do not depend every disturbed motion "
+        "stays near."
+    )
+    LINEAR_GROWS = (
+        "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: "
+        "there are disturbances that grow like a power of t."
+    )
+    LINEAR_DRIFTS = (
+        "Nothing grows but a uniform drift along displacements that change no equation: coordinates count here, but "
+        "for that drift the motion is stable; of bodies just that is said."
+    )
+    LINEAR_GYROSCOPIC = (
+        "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make "
+        "it unstable (Kelvin-Chetaev)."
+    )
+    HIGHER_MINIMUM = (  # (order)
+        "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy."
+    )
+    HIGHER_MINIMUM_AND_COMPLETE = (  # (order)
+        "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy, and "
+        "dissipation is complete."
+    )
+    NO_MINIMUM = "The (changed) potential energy has no minimum: terms of order [[1]] decide."  # (order)
+    ENERGY_LOST = (
+        "There is one coordinate, of which the (changed) potential energy has a strict minimum, and no motion near it "
+        "but the rest itself keeps the energy, which never grows."
+    )
+    ENERGY_GAINED = (
+        "There is one coordinate, of which the (changed) potential energy has a strict minimum, and no motion near it "
+        "but the rest itself keeps the energy, which never falls."
+    )
+    NO_FORCES = (
+        "The (changed) potential energy is constant, and no gyroscopic forces act: every position is one of rest, and "
+        "the smallest velocity leads away from it along a geodesic."
+    )
+    ALONG_RESTS = (  # (dimensions)
+        "Rests near by are a manifold of dimension [[1]], across which the potential energy has a strict minimum: slow "
+        "motions follow its geodesics (Rubin and Ungar), and leave, however slow they are."
+    )
+    FEWER_CONSTRAINTS = (
+        "Without the constraints on velocities the energy keeps velocities, and coordinates that are not cyclic, near "
+        "the rest. They do no work: so it does with them."
+    )
+    TERMS_OF_HIGHER_ORDER = "The first approximation leaves the nonlinear system open; terms of higher order decide."
     # of what no theorem carries
-    GYROSCOPIC_ONLY = auto()
-    GYROSCOPIC_ENCLOSED = auto()
-    COINCIDENCE = auto()
-    NO_ENERGY = auto()
-    NO_ENERGY_BUT_CYCLIC = auto()
-    IMAGINARY = auto()
-    IMAGINARY_SIMPLE = auto()
-    ZERO_ROOT = auto()
-    IMAGINARY_BESIDES_TURNED = auto()
-    IMAGINARY_NONHOLONOMIC = auto()
-    UNLIKE_PARTS = auto()
-    HIGHER_ORDER = auto()
+    GYROSCOPIC_ONLY = (
+        "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
+        "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and leaves the "
+        "nonlinear system open."
+    )
+    GYROSCOPIC_ENCLOSED = (
+        "The first approximation is stable by gyroscopic forces alone, and leaves the nonlinear system open."
+    )
+    COINCIDENCE = "Frequencies coincide (semisimple): a border of the region of gyroscopic stabilisation may be here."
+    NO_ENERGY = "$K > 0$, but no energy integral of the nonlinear system is known."
+    NO_ENERGY_BUT_CYCLIC = (
+        "Without the cyclic coordinates $K > 0$, but no energy integral of the nonlinear system is known."
+    )
+    IMAGINARY = "No root has a positive real part, but some are imaginary."
+    IMAGINARY_SIMPLE = "All roots are imaginary and simple; the forces are not potential."
+    ZERO_ROOT = "No root has a positive real part, but some are zero."
+    IMAGINARY_BESIDES_TURNED = (
+        "No root has a positive real part, but some are imaginary besides those of the turned steady spins."
+    )
+    IMAGINARY_NONHOLONOMIC = (
+        "No root has a positive real part, but some are imaginary; where velocities are constrained, or equations are "
+        "of first order, no theorem on energy or gyroscopic stabilisation is applied."
+    )
+    UNLIKE_PARTS = "Some parts are asymptotically stable, others not; no theorem that was tried covers both."
+    HIGHER_ORDER = "Terms of higher order decide."
     # of cyclic coordinates
-    COASTING = auto()
-    ALIKE = auto()
-    VELOCITIES = auto()
-    DRIFT = auto()
-    DRIFT_AT_GIVEN_MOMENTA = auto()
-    ELSEWHERE = auto()
-    DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
-    OTHER_ANGLES = auto()  # (body, axes, angles)
-    APART = auto()  # (coordinates)
-    WHILE_OTHERS_REST = auto()  # (coordinate)
-    PARTLY_CYCLIC = auto()
-    CONSTANT_MOMENTA = auto()
+    COASTING = (
+        "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
+        "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
+    )
+    ALIKE = (
+        "Nothing acts, and for the kinetic energy all positions are alike (each of its parts has constant curvature): "
+        "displacements that change no equation lead to every position near by, as cyclic coordinates do. Velocities, "
+        "measured by the kinetic energy, stay near theirs; positions drift away if they are disturbed, so that with "
+        "them counted the motion is unstable."
+    )
+    VELOCITIES = (
+        "All coordinates of this part are cyclic, and the kinetic energy of a disturbance does not grow: velocities "
+        "stay near theirs."
+    )
+    DRIFT = (
+        "This is about the other coordinates and all velocities, with respect to a part of the variables (Rumyantsev); "
+        "a perturbation of the cyclic velocities can make the cyclic coordinates drift away where no dissipation stops "
+        "them."
+    )
+    DRIFT_AT_GIVEN_MOMENTA = (
+        "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little "
+        "stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away."
+    )
+    ELSEWHERE = (
+        "This is about the other coordinates and all velocities, with respect to a part of the variables (Rumyantsev): "
+        "these tend to theirs again, and the cyclic coordinates may end elsewhere."
+    )
+    DISPLACEMENTS = (  # (how coordinates move together, each a text)
+        "No equation of motion changes when coordinates move together as [[1]]: along such displacements there are "
+        "cyclic coordinates."
+    )
+    OTHER_ANGLES = (  # (body, axes, angles)
+        "Judged in other angles of body [[1]], about axes [[2]] by [[3]], in which the same motion is steady: "
+        "coordinates are these angles here."
+    )
+    APART = (  # (coordinates)
+        "This is about [[1]]: equations of motion that know no other coordinates are judged by themselves."
+    )
+    WHILE_OTHERS_REST = (  # (coordinate)
+        "This is about motions of [[1]] while all other coordinates rest: these are motions, too."
+    )
+    PARTLY_CYCLIC = "A part of the coordinates is cyclic."
+    CONSTANT_MOMENTA = "The momenta of cyclic coordinates are constant, so their velocities stay near theirs."
     # of what is open
-    SEE_CASES = auto()
-    BORDERS_APART = auto()
-    CONDITIONS_UNWRITTEN = auto()
-    BORDER = auto()
-    ORDER_DECIDES = auto()  # (order, whatever is positive where it is stable, word there)
-    VALUES_DECIDE = auto()
-    NEAR_BORDER = auto()
-    JORDAN_BLOCK = auto()
-    LINEAR_OPEN = auto()
-    ZERO_OR_MULTIPLE_BESIDES_TURNED = auto()
-    CYCLIC_ZERO_ROOTS = auto()
-    NOT_CLOSED = auto()  # (coordinates)
-    MORE_ZERO_ROOTS = auto()  # (zero roots, dimensions of the family)
-    NOT_ENCLOSED = auto()
-    NO_CLOSED_FORM = auto()  # (why)
-    ALSO_ELSEWHERE = auto()  # (whatever which coordinates are)
-    DIFFERS_ALONG = auto()  # (which coordinates, word, other words)
-    NO_EQUATIONS = auto()  # (why)
-    MASS_SINGULAR = auto()
-    ORDER_LOWER = auto()
-    VARIES = auto()  # (with what)
-    RANK_LOST = auto()  # (rank there, rank near it)
-    OTHER_BRANCH = auto()  # (rank there, lower rank elsewhere)
-    NOT_THE_VALUE = auto()  # (of which parameter)
-    MOTION_NOT_THERE = auto()  # (condition, value)
-    MOTION_OPEN = auto()  # (condition)
-    POLE = auto()  # (divisor)
+    SEE_CASES = "It depends on the parameters; see the cases."
+    BORDERS_APART = "This is so wherever no condition is an equality; border cases are left open here."
+    CONDITIONS_UNWRITTEN = "Conditions are too long to be written out; see the cases."
+    BORDER = "On a border: no theorem of the first approximation decides."
+    ORDER_DECIDES = member(_order_decides)  # (order, whatever is positive where it is stable, word there)
+    VALUES_DECIDE = "Terms of higher order may decide: give all parameters values, and they are looked at."
+    NEAR_BORDER = "On a border, or too close to one: no theorem of the first approximation decides."
+    JORDAN_BLOCK = (
+        "A multiple root on the imaginary axis is not semisimple: the linear equations have growing solutions, the "
+        "nonlinear system is not decided by them."
+    )
+    LINEAR_OPEN = (
+        "The equations of motion are exactly linear: their roots decide, and at numbers they do so in every case; in "
+        "symbols it is left open here."
+    )
+    ZERO_OR_MULTIPLE_BESIDES_TURNED = "Besides the turned steady spins there are zero or multiple imaginary roots."
+    CYCLIC_ZERO_ROOTS = "Cyclic coordinates give zero roots, and no theorem decides about the rest."
+    NOT_CLOSED = (  # (coordinates)
+        "The coordinates [[1]] drop out of the first approximation, but are not shown to drop out of the nonlinear "
+        "equations: terms of higher order decide."
+    )
+    MORE_ZERO_ROOTS = (  # (zero roots, dimensions of the family)
+        "Zero roots beside those of coordinates that drop out: [[1]]; shown to be those of a family of steady motions: "
+        "[[2]]. Terms of higher order decide."
+    )
+    NOT_ENCLOSED = "The roots could not be enclosed."
+    NO_CLOSED_FORM = "No closed form within the budget: [[1]]."  # (why)
+    ALSO_ELSEWHERE = "This is so at [[1]] = 0, and elsewhere in samples."  # (whatever which coordinates are)
+    DIFFERS_ALONG = (  # (which coordinates, word, other words)
+        "It depends on [[1]]: [[2]] at 0, [[3]] in samples elsewhere."
+    )
+    NO_EQUATIONS = "[[1]]"  # (why)
+    MASS_SINGULAR = "The mass matrix is singular."
+    ORDER_LOWER = "The mass matrix is singular, so the order of the equations is lower."
+    VARIES = "The first approximation varies with [[1]]; nothing is claimed."  # (with what)
+    RANK_LOST = (  # (rank there, rank near it)
+        "The constraints are singular there: [[1]] of them are independent, [[2]] near by."
+    )
+    OTHER_BRANCH = (  # (rank there, lower rank elsewhere)
+        "This is another branch of the constraints: [[1]] of them are independent there, and [[2]] where the "
+        "description begins."
+    )
+    NOT_THE_VALUE = "The motion does not exist there: [[1]] has another value."  # (of which parameter)
+    MOTION_NOT_THERE = "The motion does not exist there: [[1]] = [[2]], not 0."  # (condition, value)
+    MOTION_OPEN = "Whether the motion exists there is open: [[1]] is about 0."  # (condition)
+    POLE = "The description divides by [[1]] there, which is 0: there is no motion to be judged."  # (divisor)
 
 
 #: What needs more than the first approximation, and the energy, of the whole system.
@@ -246,7 +406,32 @@ class Reason:
     @property
     def rank(self) -> tuple[int, tuple[str, ...]]:
         """Where it stands among other reasons."""
-        return self.code.value, tuple(map(str, self.data))
+        return _ORDER[self.code], tuple(map(str, self.data))
+
+
+_ORDER = {code: place for place, code in enumerate(Because)}
+
+
+def sentence(reason: Reason) -> Message:
+    return reason.code.said(*reason.data)
+
+
+def explanation(reasons: Iterable[Reason]) -> Message:
+    """The reasons, one sentence after another."""
+    return joined(map(sentence, reasons))
+
+
+def with_theorem(word: str, theorems: Sequence[str]) -> Message:
+    """``stable (Routh)``."""
+    said = Message(word)
+    if not theorems:
+        return said
+    return Message("[[word]] ([[theorems]])", word=said, theorems=named(theorems))
+
+
+def named(theorems: Sequence[str]) -> Message:
+    """The names of theorems."""
+    return joined(map(Message, theorems), ", ")
 
 
 # The theorems of problem 6 as values: what each needs, and what it gives.

@@ -30,5 +30,3 @@ Example:
     >>> [(one.directions[0][0] if one.directions else "time", one.name) for one in found.symmetries]
     [('psi', 'momentum of psi'), ('time', 'generalised energy')]
 """
-
-from mbsym.problems.symmetries.search import Blocks, Gradients, Symmetries, Symmetry, blocks, symmetries

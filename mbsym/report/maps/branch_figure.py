@@ -21,7 +21,7 @@ from mbsym.maps.mapping import float_of
 from mbsym.model.system import System
 from mbsym.report.language import Language
 from mbsym.report.maps.frame import DARK, LINE, SMALL, TEXT, axis_label, framed, legend, started
-from mbsym.report.maps.words import EVENTS, INTERRUPTED
+from mbsym.report.maps.words import INTERRUPTED
 
 #: Inches: the first panel of a coordinate, further ones, the counts.
 FIRST, FURTHER, COUNTS = 2.1, 1.25, 0.75
@@ -91,7 +91,7 @@ def _coordinate(axes: Axes, system: System, branches: Branches, name: str, used:
                 continue
             style = {"linestyle": "none", "marker": _MARKS[event], "markersize": 4, "color": DARK, "zorder": 3}
             style |= {"markerfacecolor": "white", "markeredgewidth": 0.8}
-            used.setdefault(EVENTS[event], Line2D([], [], **style))
+            used.setdefault(event.told, Line2D([], [], **style))
             y = values[name].value
             ys = [y, -y] if values[name].angle and abs(abs(y) - math.pi) < 1e-9 else [y]
             axes.plot([p] * len(ys), ys, **style)
@@ -147,5 +147,5 @@ def _lines(axes: Axes, branches: Branches, used: dict[str, Any]) -> None:
     for critical in branches.criticals:
         if branches.critical(critical).continuum:
             style: dict[str, Any] = {"color": DARK, "linewidth": 0.8, "linestyle": (0, (1, 2))}
-            used.setdefault(EVENTS[Event.CONTINUUM], Line2D([], [], **style))
+            used.setdefault(Event.CONTINUUM.told, Line2D([], [], **style))
             axes.axvline(float_of(critical.sample), zorder=1, **style)

@@ -15,7 +15,7 @@ from mbsym.maps.boundaries import Condition, Origin
 from mbsym.maps.boxes import BoxMap
 from mbsym.maps.branches_events import Event
 from mbsym.maps.branches_result import Branches, Doubt, Remark
-from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
+from mbsym.maps.result import Cell, Counted, Map, Of, Shape
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.verdict import Verdict
@@ -32,46 +32,8 @@ _TELLING = (
     *(Origin.SINGULAR, Origin.LEAVING),
 )
 
-_CONDITIONS = {
-    Origin.CONSTANT: "zero root: constant term",
-    Origin.HURWITZ: "imaginary roots: Hurwitz minor",
-    Origin.DISCRIMINANT: "double root: discriminant",
-    Origin.MEETING: "real roots meet: discriminant",
-    Origin.RESULTANT: "common root: resultant",
-    Origin.STIFFNESS: "det K = 0",
-    Origin.MASS: "det M = 0",
-    Origin.LEADING: "leading coefficient",
-    Origin.DAMPING: "det D = 0",
-    Origin.UNDAMPED: "no damping: D = 0",
-    Origin.POTENTIAL: "no circulatory forces: N = 0",
-    Origin.NOT_GYROSCOPIC: "no gyroscopic forces: G = 0",
-    Origin.CYCLIC: "cyclic coordinates set free",
-    Origin.ENERGY: "sign that the energy depends on",
-    Origin.HIGHER_ORDER: "first term of the potential energy",
-    Origin.ASSUMPTION: "assumption",
-    Origin.SIGN: "declared sign",
-    Origin.INERTIA: "triangle inequality",
-    Origin.UNDEFINED: "division by zero",
-    Origin.SINGULAR: "singular equilibria: bifurcation, or none that is real",
-    Origin.LEAVING: "equilibria at infinity or at a border, or none that is real",
-}
-
 #: Of every file of a map that Ctrl-C ended.
 INTERRUPTED = "Interrupted: incomplete and not checked"
-
-LACKS = {
-    Lack.OUTSIDE: "not admissible",
-    Lack.MASSLESS: "kinetic energy not positive definite",
-    Lack.UNDEFINED: "formulas divide by zero",
-    Lack.TOO_LARGE: "too large to be decided",
-    Lack.WITHDRAWN: "withdrawn: the check failed",
-    Lack.NOT_REACHED: "not reached",
-    Lack.IRRATIONAL: "at an irrational value: not looked at",
-    Lack.UNPROVED: "nothing is proved",
-    Lack.INCOMPLETE: "not counted: the list is not complete",
-    Lack.FAMILIES: "infinitely many equilibria",
-    Lack.UNCOUNTED: "not counted",
-}
 
 
 def stem(chart: Map) -> str:
@@ -98,7 +60,7 @@ def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition
 
 def condition_words(condition: Condition, chart: Map, named: Callable[[str], str] = str) -> Message:
     """``double root: discriminant (psi, phi, sigma)``; ``named`` writes a coordinate."""
-    words = Message(_CONDITIONS[condition.origin])
+    words = condition.origin.told
     if condition.origin in (Origin.ASSUMPTION, Origin.SIGN, Origin.INERTIA):
         return joined((words, condition.about), ": ") if condition.about else words
     if condition.part is None or chart.section is None or len(chart.section.parts) == 1:
@@ -150,7 +112,7 @@ def cell_words(chart: Map, cell: Cell) -> Message:
         return counted_words(counts, cell.certainty)
     if (judged := cell.judged) is None:
         assert cell.lack is not None
-        return Message(LACKS[cell.lack])
+        return cell.lack.told
     return signature_words(judged) if chart.of is Of.SIGNATURE else judged_words(judged)
 
 
@@ -209,16 +171,6 @@ def percent(chart: BoxMap) -> Message:
 
 # --- branches of equilibria -------------------------------------------------------------------------------------------
 
-EVENTS = {
-    Event.FOLD: "fold",
-    Event.STEEP: "vertical tangent",
-    Event.TRANSCRITICAL: "transcritical point",
-    Event.ISOLATED: "isolated point",
-    Event.PITCHFORK: "pitchfork",
-    Event.CONTINUUM: "infinitely many equilibria at one value",
-    Event.DEGENERATE: "degenerate point, not named",
-}
-
 _DOUBTS = {
     Doubt.UNFINISHED: "critical values may be missing, the exact solution is not finished",
     Doubt.THROUGHOUT: "equilibria are singular over a whole interval: critical values may be missing",
@@ -240,7 +192,7 @@ def event_words(events: Iterable[Event]) -> Message:
     listed = list(events)
     messages = []
     for event in dict.fromkeys(listed):
-        words, count = Message(EVENTS[event]), listed.count(event)
+        words, count = event.told, listed.count(event)
         messages.append(joined((f"{count} x", words)) if count > 1 else words)
     return joined(messages, ", ")
 
@@ -251,14 +203,14 @@ def critical_words(branches: Branches, at: Cell) -> str:
     if critical.tried:
         return Message("near it the number changes, found by trying")
     if critical.balance is False:
-        return Message(EVENTS[Event.DEGENERATE])
+        return Event.DEGENERATE.told
     parts = [event_words(critical.events)] if critical.events else []
     if branches.leaves(at) and not critical.continuum:
         parts.append(Message(_RANK_LOST if critical.rank_lost else _BORDER))
     if branches.verdict_changes(at) and not parts and not branches.count_changes(at):
         parts.append(Message(_CHANGE if branches.certain(at) else _DIFFER))
     if not parts and branches.happens(at):
-        parts.append(Message(EVENTS[Event.DEGENERATE]))
+        parts.append(Event.DEGENERATE.told)
     return joined(parts, ", ") if parts else ""
 
 

@@ -46,7 +46,7 @@ from mbsym.report.documents.results import equations as doc
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.result import Constraints
     from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.reactions import Reaction
     from mbsym.report.results import Results

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
-from mbsym.problems.invariant_sets import InvariantSets, StationarySet
+from mbsym.problems.invariant_sets.result import InvariantSets, StationarySet
 from mbsym.report.content import Block, Heading, Phrase, Said, ragged
 from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import invariant_sets as doc

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from flint import arb
 
 from mbsym.model.system import System
-from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms
+from mbsym.problems.normal_forms.result import Focus, InSymbols, Judged, NormalForms
 from mbsym.report.content import Block, Heading, Said, ragged
 from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import normal_forms as doc

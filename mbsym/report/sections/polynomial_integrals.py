@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import worded
 from mbsym.model.system import System
-from mbsym.problems.polynomial_integrals import Polynomials
+from mbsym.problems.polynomial_integrals.result import Polynomials
 from mbsym.report.content import Block, Display, Heading, Inline, Notation, Relation, Said, ragged, say
 from mbsym.report.documents import integrals
 from mbsym.report.documents.base import Write
@@ -27,8 +27,8 @@ from mbsym.report.words.integrals_words import (
 
 if TYPE_CHECKING:
     from mbsym.formulas.formula import Formula
-    from mbsym.problems.polynomial_integrals import PolynomialIntegrals
-    from mbsym.problems.symmetries import Symmetries
+    from mbsym.problems.polynomial_integrals.result import PolynomialIntegrals
+    from mbsym.problems.symmetries.search import Symmetries
     from mbsym.report.results import Results
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import is_velocity
 from mbsym.model.system import System
-from mbsym.problems.stabilisation import Stabilisation
+from mbsym.problems.stabilisation.result import Stabilisation
 from mbsym.report.content import (
     Block,
     Display,

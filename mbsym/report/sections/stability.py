@@ -19,14 +19,12 @@ from mbsym.mechanics.variables import expressions
 from mbsym.model.quantities import rate_unit
 from mbsym.model.system import System
 from mbsym.problems.dissipation import EnergyLaw
-from mbsym.problems.stability import Stability
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.problems.stability.linear_form import CONSERVATIVE
-from mbsym.problems.stability.problem import SubsystemStability
+from mbsym.problems.stability.problem import Stability, SubsystemStability
 from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Place
-from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.words import Because, Word
+from mbsym.problems.stability.words import Because, Word, sentence
 from mbsym.report.conditions import (
     CaseStatement,
     Shown,

@@ -16,11 +16,10 @@ from mbsym.model.quantities import rate_unit
 from mbsym.model.system import INERTIAL, System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
-from mbsym.problems.stabilisation import Stabilisation
-from mbsym.problems.stability import Stability, SubsystemStability
+from mbsym.problems.stabilisation.result import Stabilisation
 from mbsym.problems.stability.enclosed import numbers
-from mbsym.problems.stability.sentences import sentence
-from mbsym.problems.stability.words import Because, Word
+from mbsym.problems.stability.problem import Stability, SubsystemStability
+from mbsym.problems.stability.words import Because, Word, sentence
 from mbsym.report.brief import claims_counted, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, as_stood, stood_by_name, told_cases
 from mbsym.report.content import (
@@ -68,7 +67,7 @@ from mbsym.report.words.stabilisation_words import controllability
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.result import Constraints
     from mbsym.problems.equations import Equations
     from mbsym.report.results import Results
 

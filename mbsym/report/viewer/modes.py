@@ -24,8 +24,8 @@ from mbsym.mechanics.motion import motion_values
 from mbsym.picture.encode import number
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability.problem import matrices_at, parameter_values, ring_numbers
-from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.words import sentence
 from mbsym.report.documents import parts
 from mbsym.report.documents.base import plain
 

@@ -13,7 +13,7 @@ from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.claims import ClaimResult, Outcome, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
 from mbsym.problems.claims.result import ENTRY
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import Stability
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Word
 from mbsym.report.content import Inline, Name, Number, Phrase, Relation, Said, Strong, joined, say

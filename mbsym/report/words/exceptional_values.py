@@ -9,10 +9,10 @@ from flint import arb
 
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.model.system import System
-from mbsym.problems.normal_forms import Judged, Outcome, Theorem
 from mbsym.problems.normal_forms.along import Along, Special
-from mbsym.problems.stability.sentences import with_theorem
+from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.words import with_theorem
 from mbsym.report.documents import nonlinear as doc
 from mbsym.report.documents.base import file_of
 from mbsym.report.sections.normal_forms import enclosure

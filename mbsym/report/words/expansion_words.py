@@ -14,7 +14,7 @@ from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.result import Choice, Outcome
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import Stability
 from mbsym.problems.stability.words import Word
 from mbsym.report.conditions import statements
 from mbsym.report.content import Gaps, Inline, Name, Phrase, Raised, Relation, Said, named, say

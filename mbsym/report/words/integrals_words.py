@@ -7,7 +7,7 @@ from typing import Any
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import Message, worded
-from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals
+from mbsym.problems.polynomial_integrals.result import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals
 from mbsym.report.content import Gaps, Inline, Phrase, Said, joined, named, say
 from mbsym.report.plain_writer import Writer
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
-from mbsym.problems.invariant_sets import (
+from mbsym.problems.invariant_sets.result import (
     Definiteness,
     Family,
     FirstApproximation,
@@ -20,7 +20,7 @@ from mbsym.problems.invariant_sets import (
     SecondVariation,
     StationarySet,
 )
-from mbsym.problems.invariant_sets import Relation as Sign
+from mbsym.problems.invariant_sets.result import Relation as Sign
 from mbsym.report.content import Gaps, Math, Name, Notation, Polynomial, Relation, Said, compared, joined, named, say
 
 

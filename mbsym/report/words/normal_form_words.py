@@ -9,7 +9,7 @@ from typing import Any
 from flint import arb
 
 from mbsym.expressions.message import worded
-from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms, Outcome, Theorem, Why
+from mbsym.problems.normal_forms.result import Focus, InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.stability.words import Word
 from mbsym.report.content import Gaps, Math, Notation, Number, Relation, Said, named, say
 

@@ -61,32 +61,7 @@ def _by_component(definitions: Told[Meaning], group: Sequence[Definition[Meaning
     return tuple(sorted(group, key=lambda item: () if item.meaning is None else item.meaning.place))
 
 
-#: ``[[b]]`` is the body, ``[[p]]`` its predecessor, ``[[it]]`` the body with what it carries, ``[[o]]`` the expansion
-#: point, ``[[l]]`` the number of a load, ``[[common]]`` the body that carries both of its ends.
-_WORDS = {
-    Quantity.DIRECTION_COSINE: "Direction cosines of [[b]] relative to [[p]], by row and column",
-    Quantity.RELATIVE_ANGULAR_VELOCITY: "Angular velocity of [[b]] relative to [[p]]",
-    Quantity.ANGULAR_VELOCITY: "Angular velocity of [[b]]",
-    Quantity.CARRIED_VELOCITY: "Velocity of the connection point of [[b]], in the axes of [[p]]",
-    Quantity.VELOCITY_ORIGIN: "Velocity of the connection point of [[b]]",
-    Quantity.VELOCITY_CENTRE: "Velocity of the mass centre of [[b]]",
-    Quantity.ANGULAR_ACCELERATION: "Angular acceleration of [[b]]",
-    Quantity.CARRIED_ACCELERATION: "Acceleration of the connection point of [[b]], in the axes of [[p]]",
-    Quantity.ACCELERATION: "Acceleration of the connection point of [[b]]",
-    Quantity.OUTWARD: "Unit vector from the attracting centre to the connection point of [[o]], in the axes of [[b]]",
-    Quantity.RADIUS: "Radius vector from the attracting centre to the mass centre of [[b]]",
-    Quantity.PLACE: "Radius vector from the connection point of [[o]] to the mass centre of [[b]]",
-    Quantity.ALONG: "Projection of that radius vector on that unit vector, for [[b]]",
-    Quantity.SPAN: "Vector between the ends of load [[l]] (the first index), in the axes of [[common]]",
-    Quantity.MASS: "Mass of [[it]]",
-    Quantity.FIRST_MOMENT: "Mass times radius vector of the mass centre, of [[it]]",
-    Quantity.INERTIA: "Inertia tensor of [[it]] about the connection point",
-    Quantity.UNIT_FORCE: "Force at the connection point of [[b]] required by a unit acceleration of",
-    Quantity.UNIT_MOMENT: "Moment about the connection point of [[b]] required by a unit acceleration of",
-    Quantity.FORCE: "Force that [[it]] needs beyond the loads",
-    Quantity.MOMENT: "Moment about the connection point that [[it]] needs beyond the loads",
-}  # fmt: skip
-#: The same where gravity, ``[[gravity]]``, is taken off an acceleration.
+#: The words of a quantity where gravity, ``[[gravity]]``, is taken off an acceleration.
 _LESS_GRAVITY = {
     Quantity.CARRIED_ACCELERATION: (
         "Acceleration of the connection point of [[b]] less [[gravity]], in the axes of [[p]]"
@@ -120,8 +95,8 @@ class _Speaker:
         body = self.system.body(meaning.body) if meaning.body else None
         gravity = self._gravity(meaning.body) if meaning.quantity in _LESS_GRAVITY else []
         about = self._expanded_about(meaning.load) if meaning.quantity in _FROM_ORIGIN else ""
-        templates = _LESS_GRAVITY if gravity else _FROM_ORIGIN if about == INERTIAL else _WORDS
-        template = templates[meaning.quantity]
+        other = _LESS_GRAVITY if gravity else _FROM_ORIGIN if about == INERTIAL else {}
+        template = other.get(meaning.quantity, meaning.quantity.words)
         makers: dict[str, Callable[[], str]] = {
             "b": lambda: self._body(meaning.body),
             "it": lambda: self._carried(meaning.body),

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stabilisation import (
+from mbsym.problems.stabilisation.result import (
     Control,
     Dissipation,
     EnergyFunction,

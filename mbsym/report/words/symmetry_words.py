@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import worded
-from mbsym.problems.symmetries import Symmetries, Symmetry
+from mbsym.problems.symmetries.search import Symmetries, Symmetry
 from mbsym.report.content import Inline, Name, Relation, Said, Symbol, say
 
 LOOKED_FOR = (

@@ -16,8 +16,7 @@ from mbsym.problems.relative_equilibria.equilibria import (
     RelativeEquilibrium,
 )
 from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations
-from mbsym.problems.stability.sentences import explanation
-from mbsym.problems.stability.words import Because, Word
+from mbsym.problems.stability.words import Because, Word, explanation
 from mbsym.report.content import Block, Graded, Inline, Strong, Subheading, Table, aligned, column, paragraph
 from mbsym.report.unit_text import labelled, pretty
 

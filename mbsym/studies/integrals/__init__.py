@@ -18,7 +18,7 @@ from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Stud
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import InvariantRelations, Setting
-    from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
+    from mbsym.problems.polynomial_integrals.result import Along, Cases, DarbouxAlong, PolynomialIntegrals
     from mbsym.report.content import Block
 
 #: For ``--cases``: counted work, worth about so many seconds.
@@ -102,8 +102,8 @@ def derive(context: Asked, request: Request, watch: Watch) -> Found:
     """Raises NotFit where the field has other variables or parameters than the request names."""
     from mbsym.algebra.failures import NoClosedForm
     from mbsym.analysis import Analysis
-    from mbsym.analysis.polynomial import allowed, integrals_of, invariant_relations, setting, special_relations
-    from mbsym.problems.polynomial_integrals import along_of, cases_of
+    from mbsym.analysis.polynomial import allowed, integrals_of, invariant_relations, setting
+    from mbsym.problems.polynomial_integrals.homogenised import InAnyField
 
     watch("polynomial integrals")
     analysis = Analysis(context.system)
@@ -118,15 +118,16 @@ def derive(context: Asked, request: Request, watch: Watch) -> Found:
     if wrong := tuple(_unfit(there, request)):
         raise NotFit(wrong)
     integrals, axis = integrals_of(there, request.degree, request.weights), request.vary
-    along = None if axis is None else along_of(integrals, there.kinds, there.known, axis.low, axis.high)
+    beside = InAnyField(integrals, there.kinds, there.known)
+    along = None if axis is None else beside.along(axis.low, axis.high)
     positive = [parameter.name for parameter in context.system.parameters if parameter.sign == "positive"]
     special = None
     if request.cases:
         budget = BUDGET if request.budget is None else request.budget
-        special = cases_of(integrals, there.kinds, there.known, positive, budget)
+        special = beside.cases(positive, budget)
         special = special and allowed(analysis, there, request.values, special)
-    invariant = invariant_relations(there, integrals, positive) if request.relations else None
-    at = special_relations(there, integrals, axis.low, axis.high) if request.relations and axis is not None else None
+    invariant = invariant_relations(beside, positive) if request.relations else None
+    at = beside.darboux_along(axis.low, axis.high) if request.relations and axis is not None else None
     return Found(there, integrals, along, special, invariant, at)
 
 

@@ -26,7 +26,8 @@ from mbsym.report.words.integrals_words import (
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
-    from mbsym.problems.polynomial_integrals import (
+    from mbsym.problems.polynomial_integrals.homogenised import ZeroLevels
+    from mbsym.problems.polynomial_integrals.result import (
         Along,
         Cases,
         DarbouxAlong,
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
         PolynomialIntegrals,
         Relations,
         Special,
-        ZeroLevels,
     )
 
 #: Why it is not known that there are no other invariant relations.

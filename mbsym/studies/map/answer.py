@@ -24,7 +24,7 @@ from mbsym.maps.subdivision import End
 from mbsym.model.system import System
 from mbsym.report.content import Block, Table, aligned, column, paragraph
 from mbsym.report.language import Language
-from mbsym.report.maps.words import LACKS, cell_words, condition_words, row_words, share, stem, telling
+from mbsym.report.maps.words import cell_words, condition_words, row_words, share, stem, telling
 from mbsym.studies.section import against_sign, unless_parameter
 from mbsym.studies.study import Answer, Asked, Exit, Unfit, Watch, missing
 
@@ -169,7 +169,7 @@ def _picture(stack: Stack, picture: Picture) -> tuple[str, str, str]:
         return label, number(shown.z), _seen(shown.plane)
     assert shown.lack is not None
     broken = ", ".join(dict.fromkeys(demand.condition.about for demand in shown.broken))
-    return label, "", joined((Message(LACKS[shown.lack]), *([broken] if broken else [])), ": ")
+    return label, "", joined((shown.lack.told, *([broken] if broken else [])), ": ")
 
 
 def _seen(plane: Map) -> str:
@@ -373,25 +373,14 @@ def _checked(chart: Map, planes: Sequence[Map]) -> Iterator[str]:
 #: So many points are told; map.json has all.
 MOST_POINTS = 6
 
-#: What a border is called; the reason behind the last one is in map.json.
-ONSETS = {
-    Onset.SOFT: Message("soft: asymptotically stable at the border, small oscillations arise beyond"),
-    Onset.HARD: Message("hard: unstable at the border already"),
-    Onset.OPEN: Message("open whether soft or hard: terms of third order do not decide, or are not at hand"),
-    Onset.NEITHER: Message(
-        "neither soft nor hard: roots are to the right on both sides or on none, one side is not judged, or the "
-        "equations are exactly linear"
-    ),
-}
-
 
 def borders_of_slices(planes: Sequence[Map]) -> Iterator[str]:
     """How stability is lost at imaginary pairs in all slices, counted; map.json has each arc."""
     arcs = [one for plane in planes for one in plane.arcs if one.soft is not None]
-    for onset, words in ONSETS.items():
+    for onset in Onset:
         alike = sum(_onset(arc) is onset for arc in arcs)
         if alike:
-            yield Message("imaginary pair, [[arcs]] of slices: [[onset]]", arcs=Counted(alike, "arc"), onset=words)
+            yield Message("imaginary pair, [[arcs]] of slices: [[onset]]", arcs=Counted(alike, "arc"), onset=onset.told)
     changing = sum(_onset(arc) is None for arc in arcs)
     if changing:
         text = "imaginary pair, [[arcs]] of slices: soft in parts, hard in others"
@@ -401,10 +390,10 @@ def borders_of_slices(planes: Sequence[Map]) -> Iterator[str]:
 def borders(chart: Map) -> Iterator[str]:
     """Where a pair of roots is imaginary and the others are to the left: how stability is lost."""
     soft = [border for border in chart.borders if border.soft is not None]
-    for onset, words in ONSETS.items():
+    for onset in Onset:
         alike = [_place(chart, border) for border in soft if _onset(border) is onset]
         if alike:
-            yield Message("imaginary pair, [[places]]: [[onset]]", places=joined(alike, ", "), onset=words)
+            yield Message("imaginary pair, [[places]]: [[onset]]", places=joined(alike, ", "), onset=onset.told)
     for cell in soft:
         stretches = cell.soft.stretches or () if cell.soft is not None else ()
         if len(stretches) > 1:

@@ -15,9 +15,9 @@ from jsonschema import Draft202012Validator
 import mbsym
 from mbsym.analysis.judge import exceptional
 from mbsym.analysis.stages import Unavailable
-from mbsym.problems.normal_forms import Outcome, Theorem, Why
 from mbsym.problems.normal_forms.along import NotAlong
 from mbsym.problems.normal_forms.expansion import NotExpanded
+from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 from mbsym.report.schemas import schema
 from mbsym.report.words.exceptional_values import lines
 from mbsym_cli.main import main

@@ -9,7 +9,7 @@ import pytest
 import sympy
 
 import mbsym
-from mbsym.problems.normal_forms import Outcome, Theorem, Why
+from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 
 LINE = """
 mbsym: 1

@@ -12,8 +12,9 @@ from flint import acb, arb, ctx
 import mbsym
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.analysis.judge import exceptional
-from mbsym.problems.normal_forms import Judged, Outcome, Theorem, Why, equal, zero_root
+from mbsym.problems.normal_forms import equal, zero_root
 from mbsym.problems.normal_forms.equal import equal_frequencies
+from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import NotVerified
 from mbsym.report.words.exceptional_values import lines
 

@@ -12,8 +12,8 @@ import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.analysis.higher import ignorable
 from mbsym.analysis.judge import exceptional
-from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem
 from mbsym.problems.normal_forms import expansion as generalized_potential
+from mbsym.problems.normal_forms.result import NormalForms, Outcome, Theorem
 from mbsym.report.words.exceptional_values import lines
 
 POINT = """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import mbsym
-from mbsym.problems.normal_forms import Outcome, Theorem, Why
+from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 from mbsym.problems.stability.words import Word
 
 #: A charge on the top of a hill in a magnetic field: w = n +- sqrt(n^2 - k), of which w_1 w_2 = k, w_1 + w_2 = 2 n.

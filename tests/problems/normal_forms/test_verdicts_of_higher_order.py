@@ -12,8 +12,8 @@ import mbsym
 from mbsym.algebra.tower import Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.analysis.stages import Unavailable
-from mbsym.problems.normal_forms import Focus, Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.exact import Resonant
+from mbsym.problems.normal_forms.result import Focus, Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged, vectors
 from mbsym.report.words.normal_form_words import sentences
 

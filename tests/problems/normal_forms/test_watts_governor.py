@@ -21,7 +21,7 @@ import pytest
 
 import mbsym
 from mbsym.analysis.higher import judge
-from mbsym.problems.normal_forms import Outcome, Theorem
+from mbsym.problems.normal_forms.result import Outcome, Theorem
 
 WATT = """
 mbsym: 1

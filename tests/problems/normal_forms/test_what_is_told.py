@@ -14,7 +14,7 @@ from terminal import told
 import mbsym
 from mbsym.analysis.judge import exceptional
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem, Why
+from mbsym.problems.normal_forms.result import NormalForms, Outcome, Theorem, Why
 from mbsym.report.messages import messages
 from mbsym.report.plain_writer import Writer
 from mbsym.report.results_json import render

@@ -17,14 +17,10 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
-from mbsym.analysis.polynomial import special_relations
-from mbsym.problems.polynomial_integrals import (
-    darboux_along,
-    darboux_along_of,
-    darboux_of,
-    grading,
-    polynomial_integrals,
-)
+from mbsym.problems.polynomial_integrals.darboux import darboux_along
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import InAnyField
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 KINDS = (("x", "y", "z"),)
 
@@ -53,7 +49,7 @@ def rabinovich(**values):
 
 def along(field, low, high, degree):
     usual = polynomial_integrals(field, grading(field, KINDS), degree)
-    return darboux_along_of(usual, KINDS, (), Fraction(low), Fraction(high))
+    return InAnyField(usual, KINDS, ()).darboux_along(Fraction(low), Fraction(high))
 
 
 #: Parameters, the one that is varied, the interval, the degree: at a value f up to a factor, and K.
@@ -144,7 +140,7 @@ def test_a_planted_error_is_not_covered():
 @pytest.mark.parametrize("value", [Fraction(1, 2), 3, Fraction(7, 2), 5])
 def test_at_values_that_are_not_listed_the_search_at_numbers_finds_none(value):
     field = lorenz(s=1, w=0, b=value)
-    assert darboux_of(polynomial_integrals(field, grading(field, KINDS), 4), KINDS, ()).polynomials == ()
+    assert InAnyField(polynomial_integrals(field, grading(field, KINDS), 4), KINDS, ()).darboux().polynomials == ()
 
 
 def test_rabinovichs_values_are_found():
@@ -171,7 +167,9 @@ def test_the_value_of_hess_and_appelrot_is_found(request):
     system = mbsym.load(request.config.rootpath / "systems/euler-poisson.yaml")
     numbers = {"A": 6, "C": 3, "x0": 1, "y0": 0, "z0": 1, "m": 1, "g": 1}
     there = polynomial.setting(system, {name: Fraction(x) for name, x in numbers.items()})
-    found = special_relations(there, polynomial.integrals_of(there, 1), Fraction(1), Fraction(5))
+    found = InAnyField(polynomial.integrals_of(there, 1), there.kinds, there.known).darboux_along(
+        Fraction(1), Fraction(5)
+    )
     assert [(one.value, [str(f.polynomial) for f in one.polynomials]) for one in found.values] == [
         (Fraction(4), ["2*p + r"])
     ]

@@ -13,16 +13,12 @@ import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
 from mbsym.analysis.polynomial import invariant_relations
-from mbsym.problems.polynomial_integrals import (
-    Obstacle,
-    cofactor_of,
-    darboux_of,
-    darboux_polynomials,
-    grading,
-    polynomial_integrals,
-)
-from mbsym.problems.polynomial_integrals.darboux import rest_means
+from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials, rest_means
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import InAnyField
 from mbsym.problems.polynomial_integrals.modular import PRIMES, lifted
+from mbsym.problems.polynomial_integrals.result import Obstacle
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 
 def planted(names=("k",)):
@@ -101,7 +97,7 @@ def test_hess_relation_is_the_only_one_of_its_top():
 def test_hess_gyrostat(numbers, expected):
     """L. N. Sretensky (1963): Hess's case with a rotor; f is linear, but not homogeneous."""
     there, found = of_file("heavy-gyrostat", numbers | {"m": 1, "g": 1}, 3)
-    told = darboux_of(found, there.kinds, there.known)
+    told = InAnyField(found, there.kinds, there.known).darboux()
     assert [
         (str(there.formula(one.polynomial)), str(there.quotient(one.cofactor, there.field.denominator)))
         for one in told.polynomials
@@ -111,9 +107,9 @@ def test_hess_gyrostat(numbers, expected):
 
 def test_levels_that_are_not_looked_at_are_not_said_to_be_empty():
     there, found = of_file("double-pendulum", {}, 1)
-    assert invariant_relations(there, found, []).levels is None
+    assert invariant_relations(InAnyField(found, there.kinds, there.known), []).levels is None
     there, found = of_file("goryachev-chaplygin", {}, 4)
-    levels = invariant_relations(there, found, ["C"]).levels
+    levels = invariant_relations(InAnyField(found, there.kinds, there.known), ["C"]).levels
     assert levels is not None
     assert [(one.level.weight, [w for w, _ in one.integrals], one.complete) for one in levels.levels] == [
         (2, [], True),

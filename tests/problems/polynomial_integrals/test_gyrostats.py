@@ -14,9 +14,10 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import Analysis
 from mbsym.analysis.polynomial import integrals_of, setting
-from mbsym.problems.polynomial_integrals import along_of, cases_of, grading, polynomial_integrals, zero_levels_of
-from mbsym.problems.polynomial_integrals.homogenised import _spanned, homogenised
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import InAnyField, _spanned, homogenised
 from mbsym.problems.polynomial_integrals.modular import PRIMES, at_random
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 GYROSTAT = Path(__file__).parents[3] / "systems" / "heavy-gyrostat.yaml"
 
@@ -26,7 +27,7 @@ def special(values, degree, budget=60.0):
     there = setting(Analysis(system), values)
     found = integrals_of(there, degree)
     positive = [one.name for one in system.parameters if one.sign == "positive"]
-    return there, cases_of(found, there.kinds, there.known, positive, budget)
+    return there, InAnyField(found, there.kinds, there.known).cases(positive, budget)
 
 
 def by_condition(found):
@@ -102,17 +103,17 @@ def test_two_angles_are_refused():
     kinds = (("u",), ("s", "c"), ("x", "y"))
     usual = polynomial_integrals(field, grading(field, kinds), 1)
     with pytest.raises(NoClosedForm, match="one unit vector or angle"):
-        cases_of(usual, kinds, (), (), 60.0)
+        InAnyField(usual, kinds, ()).cases((), 60.0)
     # A wrong sign in Poisson's equations: the length is no integral, and its relation cannot be left out.
     wrong = replace(field, numerators=(tops[0], tops[1], s * u, tops[3], tops[4]), relations=relations[:1])
     with pytest.raises(NoClosedForm, match="one unit vector or angle"):
-        cases_of(polynomial_integrals(wrong, grading(wrong, kinds), 1), kinds, (), (), 60.0)
+        InAnyField(polynomial_integrals(wrong, grading(wrong, kinds), 1), kinds, ()).cases((), 60.0)
 
 
 def line(values, name, low, high, degree, file=GYROSTAT):
     there = setting(Analysis(mbsym.load(file).system), values)
     found = integrals_of(there, degree)
-    return there, along_of(found, there.kinds, there.known, Fraction(low), Fraction(high))
+    return there, InAnyField(found, there.kinds, there.known).along(Fraction(low), Fraction(high))
 
 
 def names_of(field):
@@ -170,16 +171,16 @@ def test_sretenskys_integral_holds_on_the_level_of_the_area_integral():
     for first, weights in ((4, [3]), (3, [])):
         values = {"A": first, "B": first, "C": 1, "z0": 0}
         there = setting(Analysis(mbsym.load(GYROSTAT).system), values)
-        found = zero_levels_of(integrals_of(there, 3), there.kinds, there.known)
+        found = InAnyField(integrals_of(there, 3), there.kinds, there.known).zero_levels()
         assert [one.level.name for one in found.levels] == ["generalised energy", "angular momentum about axis 3"]
         assert all(one.complete for one in found.levels)
         assert [w for one in found.levels for w, _ in one.integrals] == weights
     there = setting(Analysis(mbsym.load(GYROSTAT).system), {"A": 4, "B": 4, "C": 1, "z0": 0})
-    _, area = zero_levels_of(integrals_of(there, 3), there.kinds, there.known).levels
+    _, area = InAnyField(integrals_of(there, 3), there.kinds, there.known).zero_levels().levels
     ((_, third),) = area.integrals
     assert divmod(there.field.derivative(third), area.level.polynomial)[1] == 0
     several = setting(Analysis(mbsym.load(GYROSTAT.with_name("double-pendulum.yaml")).system))
-    assert zero_levels_of(integrals_of(several, 1), several.kinds, several.known) is None
+    assert InAnyField(integrals_of(several, 1), several.kinds, several.known).zero_levels() is None
 
 
 def test_a_multiple_on_the_level_is_no_integral_of_its_own():
@@ -202,5 +203,5 @@ def test_what_follows_on_a_level_is_not_told_again():
     (one,) = found.values
     assert (one.value, one.levels, found.whole) == (0, (), True)
     assert [str(there.formula(f)) for _, f in one.integrals] == ["theta_dot*r**2"]
-    levels = zero_levels_of(integrals_of(there, 4), there.kinds, there.known)
+    levels = InAnyField(integrals_of(there, 4), there.kinds, there.known).zero_levels()
     assert [level.level.name for level in levels.levels] == ["generalised energy, less a constant"]

@@ -7,8 +7,7 @@ from dataclasses import replace
 from flint import Ordering, fmpq_mpoly_ctx
 
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals import linear_relations
-from mbsym.problems.polynomial_integrals.relations import divides
+from mbsym.problems.polynomial_integrals.relations import divides, linear_relations
 
 WEIGHTS = (1, 1, 1, 2, 2, 2)
 NAMES = ("p", "q", "r", "g1", "g2", "g3")

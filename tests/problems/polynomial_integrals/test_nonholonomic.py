@@ -12,7 +12,7 @@ from mbsym.analysis.constrained import integrals_check
 from mbsym.analysis.polynomial import setting
 from mbsym.formulas.formula import Formula
 from mbsym.problems.integrals import Integral
-from mbsym.problems.invariant_sets import Definiteness
+from mbsym.problems.invariant_sets.result import Definiteness
 
 #: u' = a w^2,  (J + m a^2) w' = -m a u w  (S. A. Chaplygin, 1911).
 SLEIGH = """

@@ -11,8 +11,11 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
-from mbsym.problems.polynomial_integrals import grading, on_level, other_levels_of, polynomial_integrals
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.homogenised import InAnyField
+from mbsym.problems.polynomial_integrals.levels import on_level
 from mbsym.problems.polynomial_integrals.other_levels import _Search, _weights
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 
 def planted(c, slope=1):
@@ -24,7 +27,7 @@ def planted(c, slope=1):
 
 
 def others_of(field, kinds, degree, known=()):
-    return other_levels_of(polynomial_integrals(field, grading(field, kinds), degree, known), kinds, known)
+    return InAnyField(polynomial_integrals(field, grading(field, kinds), degree, known), kinds, known).other_levels()
 
 
 @pytest.mark.parametrize("c", [Fraction(2), Fraction(-3, 7)])
@@ -74,7 +77,7 @@ def test_of_heavy_tops_there_are_none_at_any_value():
     system = mbsym.load(SHIPPED / "goryachev-chaplygin.yaml")
     there = polynomial.setting(system, {name: Fraction(1) for name in ("C", "m", "g", "x0")})
     found = polynomial.integrals_of(there, 4)
-    energy, area = other_levels_of(found, there.kinds, there.known).levels
+    energy, area = InAnyField(found, there.kinds, there.known).other_levels().levels
     assert (energy.power, energy.by_rank, energy.complete, energy.whole) == (2, True, True, True)
     assert (area.power, area.by_rank, area.complete, area.whole) == (4, False, True, True)
     # A second route: the search at a number, on the levels of both.

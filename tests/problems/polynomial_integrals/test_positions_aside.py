@@ -13,7 +13,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.analysis.found import beyond
 from mbsym.analysis.polynomial import integrals_of, setting
-from mbsym.problems.polynomial_integrals import FUNCTION
+from mbsym.problems.polynomial_integrals.result import FUNCTION
 from mbsym.report.messages import messages
 from mbsym.report.plain_writer import Writer
 from mbsym.report.schemas import schema

@@ -16,7 +16,7 @@ import mbsym
 from mbsym.analysis import polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Formula
-from mbsym.problems.polynomial_integrals import linear_relations
+from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.report.plain_writer import Writer
 from mbsym.report.schemas import schema
 from mbsym.report.words import integrals_words
@@ -208,7 +208,7 @@ def test_symmetries_that_are_denied():
 
 
 def test_sentences_of_symmetries_have_their_translations():
-    from mbsym.problems.symmetries import Symmetries
+    from mbsym.problems.symmetries.search import Symmetries
     from mbsym.report.messages import messages
     from mbsym.report.words import symmetry_words
 

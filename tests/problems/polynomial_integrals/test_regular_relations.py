@@ -11,8 +11,10 @@ from flint import Ordering, fmpq_mpoly_ctx
 import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
-from mbsym.problems.polynomial_integrals import darboux_polynomials, grading, linear_relations, polynomial_integrals
-from mbsym.problems.polynomial_integrals.darboux import is_regular_on
+from mbsym.problems.polynomial_integrals.darboux import darboux_polynomials, is_regular_on
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.relations import linear_relations
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 
 
 @pytest.mark.parametrize("name", ["spring-pendulum", "gravity-gradient"])

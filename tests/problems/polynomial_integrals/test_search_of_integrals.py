@@ -11,9 +11,9 @@ from flint import Ordering, fmpq_mpoly_ctx
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals import grading, polynomial_integrals
+from mbsym.problems.polynomial_integrals.gradings import grading
 from mbsym.problems.polynomial_integrals.modular import PRIMES, count, monomials
-from mbsym.problems.polynomial_integrals.search import Search
+from mbsym.problems.polynomial_integrals.search import Search, polynomial_integrals
 
 SPEEDS, VECTOR = ("p", "q", "r"), ("g1", "g2", "g3")
 

@@ -10,9 +10,13 @@ from flint import Ordering, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals import along, cases, grading, levels, on_level, polynomial_integrals
 from mbsym.problems.polynomial_integrals.excess import Block, Excess, interpolated, rational
+from mbsym.problems.polynomial_integrals.families import cases
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
+from mbsym.problems.polynomial_integrals.values import along
 
 SPEEDS, VECTOR = ("p", "q", "r"), ("g1", "g2", "g3")
 

@@ -15,7 +15,8 @@ from flint import Ordering, fmpq_mpoly_ctx
 import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
-from mbsym.problems.polynomial_integrals import grading, polynomial_integrals
+from mbsym.problems.polynomial_integrals.gradings import grading
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.report.words.integrals_words import sentences
 
 BODY = """mbsym: 1

@@ -12,8 +12,8 @@ from flint import arb, fmpq, fmpq_poly
 import mbsym
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import equilibria
-from mbsym.problems.stability import Stability
 from mbsym.problems.stability.bundle import NumberField, definite_combination
+from mbsym.problems.stability.problem import Stability
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Word
 

@@ -9,7 +9,7 @@ from conftest import STATEMENTS, at_values
 from terminal import told
 
 import mbsym
-from mbsym.problems.stability import SubsystemStability
+from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.requirements import Place
 from mbsym.report.conditions import cases, statements
 from mbsym.report.targets import TARGETS

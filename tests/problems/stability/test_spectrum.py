@@ -14,6 +14,7 @@ from conftest import SHIPPED, invoked
 
 import mbsym
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
+from mbsym.problems.stability.problem import parameter_values
 from mbsym.report.formulas_by_name import root_text
 from mbsym.report.targets import TARGETS
 
@@ -42,7 +43,7 @@ def test_floats_from_the_physical_matrices_agree(name: str) -> None:
     """Another route: numpy on M, D + G, K + N of problem 5, in physical time and declared parameters."""
     a = mbsym.load(SHIPPED / f"{name}.yaml")
     linear, spectra = a.linearisation, a.stability.spectra
-    values = mbsym.problems.stability.parameter_values(a.parameters_scene, a.equilibrium)
+    values = parameter_values(a.parameters_scene, a.equilibrium)
     assert values is not None
     floats = {x: float(v) for x, v in values.items()}
     m, d, g, k, n = (np.array(x.to_sympy().subs(floats).evalf(30), dtype=float) for x in linear.matrices)

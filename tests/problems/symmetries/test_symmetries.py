@@ -15,9 +15,8 @@ from mbsym.algebra.kernel import independent
 from mbsym.analysis import symmetric
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.symmetric import symmetries_of
-from mbsym.problems.polynomial_integrals import FUNCTION
-from mbsym.problems.symmetries import blocks
-from mbsym.problems.symmetries.search import DEPENDENT
+from mbsym.problems.polynomial_integrals.result import FUNCTION
+from mbsym.problems.symmetries.search import DEPENDENT, blocks
 
 TOP = """
 mbsym: 1
