@@ -54,7 +54,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
         divides = pole(analysis, values) is not None
         nothing = Why.POLE if divides else Why.NONE if on_motion(scene, equilibrium, values) else Why.NO_MOTION
     values = values if nothing is Why.NONE else None
-    result = problem.normal_forms(scene, analysis.system, equilibrium, values, *expanded_with(analysis))
+    result = problem.Expanded(scene, analysis.system, equilibrium, *expanded_with(analysis)).normal_forms(values)
     judged = analysis.optional("stability")
     before = None if judged is None else judged.before_higher_order or judged.numerical
     first = None if before is None else before.word
@@ -85,7 +85,7 @@ def judge(analysis: Analysis) -> Callable[[Mapping[str, Any]], Judged | None]:
     def at(values: Mapping[str, Any]) -> Judged | None:
         try:
             if not made:
-                made.append(problem.judge(scene, analysis.system, equilibrium, *expanded_with(analysis)))
+                made.append(problem.Expanded(scene, analysis.system, equilibrium, *expanded_with(analysis)).at)
             return made[0](values)
         except (Failure, *NOT_THERE):
             return None
@@ -106,7 +106,8 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
             return coasting(Because.ALIKE) if _alike(analysis, values) else by_geodesics()
         damping = () if on_a_leaf(analysis) else analysis.autonomous.D.polynomials
         equilibrium = analysis.equilibrium
-        return problem.by_energy(scene, analysis.system, equilibrium, manifold, balance.conserves, values, damping)
+        expanded = problem.Expanded(scene, analysis.system, equilibrium, manifold=manifold)
+        return expanded.by_energy(balance.conserves, values, damping)
     except (Failure, *NOT_THERE):
         return None
 
@@ -212,7 +213,8 @@ def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial
             return
         manifold = on_manifold(analysis) if analysis.system.constraints else None
         damped, leaf = sign(damping[0][0]) == "positive", on_a_leaf(analysis)
-        for order, coefficient in problem.first_terms(scene, analysis.system, analysis.equilibrium, manifold, sign):
+        expanded = problem.Expanded(scene, analysis.system, analysis.equilibrium, manifold=manifold)
+        for order, coefficient in expanded.first_terms(sign):
             if order == 2:
                 return
             above, below = scene.ring.fraction(coefficient)

@@ -58,135 +58,95 @@ PRECISION = 320
 ORDER = 6
 
 
-class _Expanded:
-    """The expansions of a system to any order, each made once; with forces of a generalized potential taken in."""
+class Expanded:
+    """The expansions of the system ``whole`` to any order, each made once, and what they decide; ``scene``: the ring's.
+
+    ``conservative``: applied forces are zero or have a generalized potential, which is taken in; ``cyclic`` coordinates
+    are in neither.  With ``manifold`` in the coordinates that constraints leave.
+    """
 
     def __init__(
         self,
         scene: Scene,
         whole: Any,
         equilibrium: Equilibrium | None,
-        conservative: bool,
-        cyclic: Collection[str],
+        conservative: bool = False,
+        cyclic: Collection[str] = (),
         manifold: Callable[[int], OnManifold] | None = None,
     ) -> None:
-        self.conservative = conservative
+        self.ring, self.conservative = scene.ring, conservative
         self.plain = cache(lambda order: expansion(scene, whole, equilibrium, order, cyclic, manifold))
         self.to = cache(lambda order: taken_in(self.plain(order)) if conservative else self.plain(order))
 
     def at(self, values: Mapping[str, Any]) -> Judged:
-        """What is decided at values of all parameters."""
+        """What is decided at values of all parameters.  Raises as ``normal_forms`` does."""
         with ctx.workprec(PRECISION):
             return at_numbers(self.to, values, None) if self.conservative else _judged_field(self.to, values)
 
+    def by_energy(
+        self, conserved: bool, values: Mapping[str, Fraction], damping: Sequence[Sequence[Polynomial]] = ()
+    ) -> Verdict | None:
+        """What a minimum of V of higher order says at rational values.
 
-def judge(
-    scene: Scene,
-    whole: Any,
-    equilibrium: Equilibrium | None,
-    conservative: bool,
-    cyclic: Collection[str],
-    manifold: Callable[[int], OnManifold] | None = None,
-) -> Callable[[Mapping[str, Any]], Judged]:
-    """What terms of higher order decide at any values, as ``normal_forms`` has it at one.  Raises as that does.
+        None where it says nothing.  The energy does not grow; ``conserved``: it does not fall, either; ``damping``: D.
+        """
+        size = len(self.plain(2).coordinates)
+        numbers = Rationals({}, {})
+        carry = Carrier(self.ring, numbers, {name: numbers.number(value) for name, value in values.items()})
+        field = NumberField(fmpq_poly([0, 1]), lambda x: arb(x[0]))
 
-    With ``manifold`` in the coordinates that constraints leave.
-    """
-    return _Expanded(scene, whole, equilibrium, conservative, cyclic, manifold).at
+        def derivative(*places: int) -> Any:
+            order = len(places)
+            parts = potential(self.plain(order if order <= 4 else MOST_ORDER))
+            if parts is None:
+                return None
+            repeated = prod(factorial(k) for k in Counter(places).values())
+            return fmpq_poly([carry(parts.get(tuple(sorted(places)), self.ring.zero)) * repeated])
 
+        with ctx.workprec(PRECISION):
+            flat = (key for part in self.plain(4).lagrangian for key in part)
+            gyroscopic = has_forces(self.plain(4)) or any(sum(k >= size for k in key) == 1 < len(key) for key in flat)
+            return by_potential(
+                size, derivative, field, conserved, True, gyroscopic, [[arb(carry(x)) for x in row] for row in damping]
+            )
 
-def by_energy(
-    scene: Scene,
-    whole: Any,
-    equilibrium: Equilibrium | None,
-    manifold: Callable[[int], OnManifold],
-    conserved: bool,
-    values: Mapping[str, Fraction],
-    damping: Sequence[Sequence[Polynomial]] = (),
-) -> Verdict | None:
-    """What a minimum of V of higher order says at rational values, on the manifold that constraints leave.
+    def first_terms(self, sign: Callable[[Polynomial], str]) -> Iterator[tuple[int, Polynomial]]:
+        """Orders and coefficients of the terms of V(x) of the one coordinate, in order: those ``sign`` calls not zero.
 
-    None where it says nothing.  The energy does not grow; ``conserved``: it does not fall, either; ``damping``: D.
-    """
-    made = _Expanded(scene, whole, equilibrium, False, (), manifold)
-    size = len(made.plain(2).coordinates)
-    numbers = Rationals({}, {})
-    carry = Carrier(scene.ring, numbers, {name: numbers.number(value) for name, value in values.items()})
-    field = NumberField(fmpq_poly([0, 1]), lambda x: arb(x[0]))
+        None of several coordinates.
+        """
+        for least, most in ((2, 4), (5, MOST_ORDER)):
+            expanded = self.plain(most)
+            parts = potential(expanded)
+            if parts is None or len(expanded.coordinates) != 1:
+                return
+            for order in range(least, most + 1):
+                value = parts.get((0,) * order)
+                if value is not None and self.ring.is_zero(value) is not True and sign(value) != "zero":
+                    yield order, value
 
-    def derivative(*places: int) -> Any:
-        order = len(places)
-        parts = potential(made.plain(order if order <= 4 else MOST_ORDER))
-        if parts is None:
-            return None
-        repeated = prod(factorial(k) for k in Counter(places).values())
-        return fmpq_poly([carry(parts.get(tuple(sorted(places)), scene.ring.zero)) * repeated])
+    def normal_forms(self, values: Mapping[str, Any] | None) -> NormalForms:
+        """What terms of higher order decide of the motion, at numbers and in symbols.
 
-    with ctx.workprec(PRECISION):
-        flat = (key for part in made.plain(4).lagrangian for key in part)
-        gyroscopic = has_forces(made.plain(4)) or any(sum(k >= size for k in key) == 1 < len(key) for key in flat)
-        return by_potential(
-            size, derivative, field, conserved, True, gyroscopic, [[arb(carry(x)) for x in row] for row in damping]
+        ``values`` of all parameters, rational or enclosed; None where not all are known.  Raises NotExpanded,
+        NoClosedForm.
+        """
+        fourth_order = self.to(4)
+        coordinates = tuple(name for i, name in enumerate(fourth_order.coordinates) if i not in fourth_order.cyclic)
+        with ctx.workprec(PRECISION):
+            at_values = None if values is None else self.at(values)
+            symbols: Any = partial(_in_symbols if self.conservative else focus, fourth_order)
+            in_symbols, why = known(symbols)
+        return NormalForms(
+            coordinates=coordinates,
+            cyclic=tuple(fourth_order.coordinates[i] for i in fourth_order.cyclic),
+            conservative=self.conservative,
+            order=ORDER,
+            at_values=at_values,
+            in_symbols=in_symbols,
+            no_symbols=why,
+            taken_in=self.conservative and has_forces(self.plain(4)),
         )
-
-
-def first_terms(
-    scene: Scene,
-    whole: Any,
-    equilibrium: Equilibrium | None,
-    manifold: Callable[[int], OnManifold] | None,
-    sign: Callable[[Polynomial], str],
-) -> Iterator[tuple[int, Polynomial]]:
-    """Orders and coefficients of the terms of V(x) of the one coordinate that ``sign`` does not call zero, in order.
-
-    None of several coordinates.
-    """
-    made = _Expanded(scene, whole, equilibrium, False, (), manifold)
-    for least, most in ((2, 4), (5, MOST_ORDER)):
-        expanded = made.plain(most)
-        parts = potential(expanded)
-        if parts is None or len(expanded.coordinates) != 1:
-            return
-        for order in range(least, most + 1):
-            value = parts.get((0,) * order)
-            if value is not None and scene.ring.is_zero(value) is not True and sign(value) != "zero":
-                yield order, value
-
-
-def normal_forms(
-    scene: Scene,
-    whole: Any,
-    equilibrium: Equilibrium | None,
-    values: Mapping[str, Any] | None,
-    conservative: bool,
-    cyclic: Collection[str],
-    manifold: Callable[[int], OnManifold] | None = None,
-) -> NormalForms:
-    """What terms of higher order decide of the motion of the system ``whole``; ``scene`` is over the ring.
-
-    ``conservative``: applied forces are zero or have a generalized potential; ``cyclic`` coordinates are in neither.
-    With ``manifold`` in the coordinates that constraints leave.
-    ``values`` of all parameters, rational or enclosed; None where not all are known.  Raises NotExpanded,
-    NoClosedForm.
-    """
-
-    expanded = _Expanded(scene, whole, equilibrium, conservative, cyclic, manifold)
-    fourth_order = expanded.to(4)
-    coordinates = tuple(name for i, name in enumerate(fourth_order.coordinates) if i not in fourth_order.cyclic)
-    with ctx.workprec(PRECISION):
-        at_values = None if values is None else expanded.at(values)
-        symbols: Any = partial(_in_symbols if conservative else focus, fourth_order)
-        in_symbols, why = known(symbols)
-    return NormalForms(
-        coordinates=coordinates,
-        cyclic=tuple(fourth_order.coordinates[i] for i in fourth_order.cyclic),
-        conservative=conservative,
-        order=ORDER,
-        at_values=at_values,
-        in_symbols=in_symbols,
-        no_symbols=why,
-        taken_in=conservative and has_forces(expanded.plain(4)),
-    )
 
 
 def _judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> Judged:
