@@ -197,6 +197,18 @@ class CaseStatement:
     otherwise: bool = False
 
     @property
+    def if_(self) -> str:
+        """The words in front of ``all_of``, or of ``any_of`` alone."""
+        if len(self.all_of or self.any_of) == 1:
+            return Message("if")
+        return Message("if all of these hold" if self.all_of else "if at least one of these holds")
+
+    @property
+    def and_(self) -> str:
+        """The words between both."""
+        return Message("and at least one of these holds" if len(self.any_of) > 1 else "and")
+
+    @property
     def conditional(self) -> bool:
         """Whether it is told: one that always applies is the verdict."""
         return bool(self.all_of or self.any_of or self.otherwise)
@@ -389,11 +401,8 @@ class Shown:
         return None
 
 
-_HELD = (
-    "while the inputs keep their values on the unperturbed motion",
-    "while the inputs keep their values on the unperturbed motion, for which its condition (problem 4) holds",
-    "while the inputs keep their values on the unperturbed motion, for which its conditions (problem 4) hold",
-)
+#: What verdicts presume of inputs.
+HELD = Message("while the inputs keep their values on the unperturbed motion")
 
 
 def provided(stability: Stability, motion: Equilibrium | None, inputs: bool = False) -> str:
@@ -406,13 +415,15 @@ def provided(stability: Stability, motion: Equilibrium | None, inputs: bool = Fa
     if motion is not None and len(known) < count:
         text = joined((Message("$[[left]] = 0$", left=x) for x in stability.presumed), ", ")
         if inputs:
-            return Message("while the inputs keep their values on the unperturbed motion, for [[wanted]]", wanted=text)
+            return joined((HELD, Message("for [[wanted]]", wanted=text)), ", ")
         return Message("provided that [[wanted]]", wanted=text)
     count = len(own) if own and count else count
-    if inputs:
-        return _HELD[min(count, 2)]
     if count == 0:
-        return ""
+        return HELD if inputs else ""
+    if inputs:
+        one = Message("for which its condition (problem 4) holds")
+        many = Message("for which its conditions (problem 4) hold")
+        return joined((HELD, one if count == 1 else many), ", ")
     return (
         "provided the condition of the motion (problem 4) holds"
         if count == 1

@@ -24,6 +24,7 @@ from mbsym.problems.constraints.motion import dependent_velocities
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.problems.stability.words import Word
 from mbsym.report.conditions import (
+    HELD,
     CaseStatement,
     Shown,
     Statement,
@@ -318,7 +319,7 @@ def _freed(ring: Ring, known: Signs, row: Iterable[tuple[Polynomial, ...]]) -> l
 def _conditions(analysis: Analysis) -> Iterator[Line]:
     """What verdicts presume; of each subsystem its verdict, or its cases; then the conditions that these name."""
     if analysis.system.inputs:
-        yield Line("", Message("while the inputs keep their values on the unperturbed motion"))
+        yield Line("", HELD)
     own, stability = analysis.equilibrium.conditions, analysis.stability
     further = (x for x in stability.presumed if all(rational_ratio(x.polynomial, y.polynomial) is None for y in own))
     for x in (*own, *further):
@@ -361,14 +362,11 @@ def _of_case(case: CaseStatement, further: bool, listed: Sequence[str], seen: li
     if case.otherwise:
         yield Line("", verdict)
         return
-    several = len(case.all_of or case.any_of) > 1
-    which = "if all of these hold" if case.all_of else "if at least one of these holds"
-    yield Line("", joined((verdict, ", ", Message(which if several else "if"), ":"), ""))
+    yield Line("", joined((verdict, ", ", case.if_, ":"), ""))
     long = not all(item.formula and is_short(item.formula) for item in (*case.all_of, *case.any_of))
     yield from (_of_condition(item, long, listed, seen) for item in case.all_of)
     if case.all_of and case.any_of:
-        which = "and at least one of these holds" if len(case.any_of) > 1 else "and"
-        yield Line("", joined((Message(which), ":"), ""))
+        yield Line("", joined((case.and_, ":"), ""))
     yield from (_of_condition(item, long, listed, seen) for item in case.any_of)
 
 

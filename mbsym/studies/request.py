@@ -297,10 +297,13 @@ Anew = Annotated[bool, Flag(None, "Measure again what an earlier command has mea
 PLAIN = {"Values": "Mapping[str, Fraction | float | str]", "Numbers": "Mapping[str, Fraction]", "Anew": "bool"}
 
 
+#: The complaint where ``--time`` is needed, and its hint.
+HOW_LONG = ("how long to simulate is not said", Message("for example [[example]]", example="--time 60"))
+
+
 def duration(help: str, usual: str = "") -> Number:
     """``--time``, without which nothing can be simulated."""
-    absent = ("how long to simulate is not said", Message("for example [[example]]", example="--time 60"))
-    return Number("T", help, "-t", usual=usual, absent=absent)
+    return Number("T", help, "-t", usual=usual, absent=HOW_LONG)
 
 
 def formats(help: str, choices: tuple[str, ...], usual: str = "") -> Words:

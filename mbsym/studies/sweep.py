@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from mbsym.expressions.message import Message, joined
 from mbsym.studies.request import (
+    HOW_LONG,
     ExactSettings,
     Formula,
     Number,
@@ -127,12 +128,7 @@ def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     system = context.system
     moving = request.measure.text.startswith(MOTION)
     if moving and "time" not in context.typed:
-        yield Unfit(
-            "--time",
-            "missing-option",
-            "how long to simulate is not said",
-            Message("for example [[example]]", example="--time 60"),
-        )
+        yield Unfit("--time", "missing-option", *HOW_LONG)
     if not moving and "time" in context.typed:
         message = Message("--time goes with --measure [[motion]]FORMULA only", motion=MOTION)
         yield Unfit("--time", "conflicting-options", message, "leave it out")

@@ -100,6 +100,11 @@ def test_new_begins_with_the_example_of_its_name(tmp_path: Path, monkeypatch: py
         assert f"begun with the example {example}\n" in command("new", name, code=0).stdout
 
 
+def test_words_of_other_programs_lead_on() -> None:
+    assert "did you mean connection point?" in command("explain", "translation", code=2).stderr
+    assert "did you mean '--x k=0:1'?" in command("map", "ball.yaml", "k", "c", code=2).stderr
+
+
 def test_what_new_says_to_run_can_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     told = command("new", "a b.yaml", "--like", "pendulum").stdout

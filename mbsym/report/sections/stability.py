@@ -288,13 +288,11 @@ def _case_told(case: CaseStatement, first: bool, seen: _Keyed) -> Iterator[Block
     if case.otherwise:
         yield paragraph(Said("Otherwise"), " ", *word, ":")
     else:
-        several = len(case.all_of) > 1 or (not case.all_of and len(case.any_of) > 1)
-        which = "if all of these hold" if case.all_of else "if at least one of these holds"
         opening: tuple[Inline, ...] = () if first else (Said("Otherwise"), " ")
-        yield paragraph(*opening, *word, ", ", Said(which if several else "if"), ":")
+        yield paragraph(*opening, *word, ", ", worded(case.if_), ":")
     yield from _conditions(case.all_of, seen)
     if case.all_of and case.any_of:
-        yield paragraph(Said("and at least one of these holds" if len(case.any_of) > 1 else "and"), ":")
+        yield paragraph(worded(case.and_), ":")
     yield from _conditions(case.any_of, seen)
     yield paragraph(worded(case.explanation))
 
