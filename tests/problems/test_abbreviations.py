@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 from conftest import SHIPPED
 
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
+from mbsym.expressions.table import Table
+from mbsym.expressions.tree import Call, Name, differentiate
 from mbsym.problems.claims import Symbols
 
 
@@ -37,3 +41,10 @@ def test_every_formula_is_the_same(analysis: Analysis) -> None:
             assert symbols.in_scene(scene)(symbols.opened(side)) == alone
             formulas += 1
     assert formulas >= 4
+
+
+def test_the_slope_of_a_table_stays_one_where_abbreviations_are_opened() -> None:
+    """f'(A) with A = 2 q is the slope of f there, and not f."""
+    table = Table("f", ((Fraction(0), Fraction(1)), (Fraction(1), Fraction(3))))
+    slope = differentiate(Call("f", Name("A"), table=table), "A")
+    assert Symbols(mbsym.load(SHIPPED / "simple-pendulum.yaml").system).opened(slope) == slope

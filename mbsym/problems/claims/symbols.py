@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -58,8 +59,9 @@ class Symbols:
                 form = linear_form(argument)
                 opened = None if form is None else self._opened_form(form)
                 return Call(function, self.opened(argument) if opened is None else _written(opened))
-            case Call(function, argument, more=more, table=table):
-                return Call(function, self.opened(argument), more=tuple(map(self.opened, more)), table=table)
+            case Call():
+                more = tuple(map(self.opened, expression.more))
+                return replace(expression, argument=self.opened(expression.argument), more=more)
             case Negative(operand):
                 return Negative(self.opened(operand))
             case Operation(operator, left, right):
