@@ -308,10 +308,10 @@ def test_coinciding_frequencies_are_not_excluded() -> None:
 def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called_exact() -> None:
     """x'' = -a x - x^3 is stable at a = 0 (a strict minimum of x^4/4), the bead at g = R w^2 like it: V = m R^2 w^2
     (1 - cos th)^2/2.  Without forces on velocities or with them, the same words."""
-    for name, strict, weak in (
-        ("strict_border", "a > 0", "a >= 0"),
-        ("necessary-at-border", "g > R*w**2", "g >= R*w**2"),
-        ("soft", "mu < 0", "mu <= 0"),  # -x^2 x' takes energy wherever x is not at rest
+    for name, strict, weak, word in (
+        ("strict_border", "a > 0", "a >= 0", "stable"),
+        ("necessary-at-border", "g > R*w**2", "g >= R*w**2", "stable"),
+        ("soft", "mu < 0", "mu <= 0", "asymptotically stable"),  # E' = -x^2 x'^2 at mu = 0 vanishes along no orbit
     ):
         found = outcomes(name)
         assert found[strict, "necessary"].outcome == Outcome.BORDERS, name
@@ -319,7 +319,7 @@ def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called
         assert found[strict, "necessary"].counterexample.at_equality
         assert found[weak, "necessary"].outcome == Outcome.EXACT, name
         assert found[weak, "sufficient"].outcome == Outcome.EXACT, name  # of all parameters of the border
-        assert "with it the motion is stable (" in found[weak, "sufficient"].remark
+        assert f"with it the motion is {word} (" in found[weak, "sufficient"].remark
     assert outcomes("strict_border")["a != 0", "necessary"].outcome == Outcome.FAILS
 
 
