@@ -69,8 +69,8 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 #: Under constraints.
 INSTEAD = Message(
-    "under constraints a symmetry has an integral where they allow its displacements (Noether): 'mbsym run --problems 7' "
-    "tells such momenta, and what else is kept"
+    "under constraints a symmetry has an integral where they allow its displacements (Noether): "
+    "'mbsym run --problems 7' tells such momenta, and what else is kept"
 )
 
 STUDY = Study(
