@@ -32,7 +32,7 @@ from mbsym.model.system import System
 from mbsym.problems.relative_equilibria.conditions import near
 from mbsym.problems.relative_equilibria.equilibria import EXACT, _ChartSearch, searches_of
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns
-from mbsym.problems.relative_equilibria.verdict import OF_VELOCITIES
+from mbsym.problems.relative_equilibria.verdict import VARIED
 
 if TYPE_CHECKING:
     from mbsym.mechanics.constraints.rows import Row
@@ -100,7 +100,7 @@ class Varied:
         left, _ = near(self.rest, self.search.case)
         held = [row.position for row in self._independent]
         if any(x is None for x in held):
-            raise NoClosedForm(OF_VELOCITIES)
+            raise NoClosedForm(VARIED)
         return [self.ring.fraction(x)[0] for x in (*left, *held)]
 
     @cached_property

@@ -68,7 +68,10 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 
 #: Under constraints.
-INSTEAD = Message("'mbsym run --problems 7' tells what is kept under constraints, momenta among it")
+INSTEAD = Message(
+    "under constraints a symmetry has an integral where they allow its displacements (Noether): "
+    "'mbsym run --problems 7' tells such momenta, and what else is kept"
+)
 
 STUDY = Study(
     "symmetries", Request, derive, answer, refusal, json=as_json, instead=INSTEAD, matrices=True, held=False, out=None,

@@ -307,6 +307,8 @@ def has_energy(found: Rest) -> bool:
 
 
 OF_VELOCITIES = Message("constraints of velocities: 'mbsym run' judges a rest that the description gives")
+#: Why no branches are followed there.
+VARIED = Message("constraints of velocities: rests are listed at numbers, by 'mbsym equilibria' without --vary")
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
 
 
