@@ -617,3 +617,18 @@ def test_angles_that_gears_tie(relation: str, ratio: int, stiffness: str) -> Non
         assert turns == pytest.approx(0 if k else round(turns), abs=1e-8)
     for one, b in zip(found.equilibria, [x["b"] for x in places], strict=True):
         assert (one.verdict.word is Word.STABLE) is (slope(b + 1e-5) > slope(b - 1e-5))
+
+
+@pytest.mark.parametrize("load", ["", "damper: {coordinate: p, coefficient: 1}"])
+def test_where_nothing_acts_every_position_that_is_allowed_is_an_equilibrium(load: str) -> None:
+    """Of a loop: none is listed, and the list does not pretend to be one; with gravity or a spring it is."""
+    text = FOUR_BAR[: FOUR_BAR.index("loads:")] + "loads: [LOAD]\n" + FOUR_BAR[FOUR_BAR.index("constraints:") :]
+    lengths = {"A": 2, "B": 3, "C": 2, "D": 3}
+    found = listed(text.replace("LOAD", load), **lengths)
+    assert found.everywhere
+    assert not found.equilibria
+    assert not found.families
+    assert not found.complete
+    acting = listed(text.replace("LOAD", "spring: {coordinate: p, stiffness: 1}"), **lengths)
+    assert not acting.everywhere
+    assert acting.equilibria

@@ -88,6 +88,10 @@ __all__ = [
 ]
 
 
+#: Where nothing acts at rest, the positions that are tied.
+EVERYWHERE = Message(
+    "every position that the constraints allow is an equilibrium: nothing acts at rest ('mbsym run' judges one)"
+)
 #: The size of one interreduction under constraints (four-bars: 600,000): above this one alone may take minutes.
 REDUCTION = 4_000_000
 #: With multipliers among the unknowns (a five-bar has 48 complex rests, 54 elements of a basis, 800 bits, and takes
@@ -115,6 +119,8 @@ def equilibria(
         carried = _carried(first)
         return _by_rates(carried, _listed(carried, first.system, within, limits or Limits(), len(carried.rows)))
     rank = rank_of(first) if rank is None else rank
+    if not all(x.is_zero() for x in first.kept) and all(x.is_zero() for x in first.at_rest):
+        return Equilibria((), (), False, (EVERYWHERE,), everywhere=True)
     listed = _listed(first, first.system, within, limits or Limits(), rank, described_place(system, first, values))
     if not listed.families:
         return listed

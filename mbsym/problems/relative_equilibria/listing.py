@@ -306,6 +306,7 @@ class Equilibria:
     they are equilibria is undecided.  ``beyond`` are solutions in which a polar coordinate that is a length is negative
     and the forces are not those at the same places of the bodies with a positive length: no states of the system meant.
     ``turning`` are the coordinates that turn at the description's rates, ``charts`` how many sets of angles were used.
+    ``everywhere``: every position that the constraints allow is one, so that none is listed.
     """
 
     equilibria: tuple[RelativeEquilibrium, ...]
@@ -316,6 +317,7 @@ class Equilibria:
     charts: int = 1
     singular: tuple[RelativeEquilibrium, ...] = ()
     beyond: tuple[RelativeEquilibrium, ...] = ()
+    everywhere: bool = False
 
 
 # Solutions of conditions of rest from many starting points: found, not proved, and perhaps not all.

@@ -169,6 +169,9 @@ def _permanent(permanent: PermanentRotations) -> Iterator[Block]:
 
 
 def _summary(equilibria: Equilibria) -> Iterator[Block]:
+    if equilibria.everywhere:
+        yield from (paragraph(Strong(remark)) for remark in equilibria.remarks)
+        return
     count = Counted(len(equilibria.equilibria), "relative equilibrium", "relative equilibria")
     words = Counter(equilibrium.verdict.word for equilibrium in equilibria.equilibria)
     kinds = joined((joined((str(n), Message(word))) for word, n in words.items()), "; ")
