@@ -112,8 +112,8 @@ class Judge:
 
     @cached_property
     def _may_lose_energy(self) -> bool:
-        balance = self.analysis.balance
-        return not (balance.conserves or balance.exactly_linear) and self._loses_energy
+        balance = self.analysis.optional("balance")  # there is none of constraints without a motion that keeps them
+        return balance is not None and not (balance.conserves or balance.exactly_linear) and self._loses_energy
 
     @cached_property
     def _loses_energy(self) -> bool:
