@@ -21,8 +21,8 @@ from mbsym.source.scope import closest
 from mbsym.source.text_kinds import claim, filled, items, of_kind, row, split
 from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, spoken, word_of
 
-#: What is meant for a heading.
-_MEANT = re.compile(r"(body|load|claim|constraint)(?: description)?\s*[(:#]?\s*([0-9]{1,6})\s*[):.]*\Z", re.IGNORECASE)
+#: What is meant for a heading; with a colon before its number it is a label (``Body: 3``).
+_MEANT = re.compile(r"(body|load|claim|constraint)(?: description)?\s*[(#]?\s*([0-9]{1,6})\s*[):.]*\Z", re.IGNORECASE)
 
 #: A label has no more words.
 MOST_WORDS = 8

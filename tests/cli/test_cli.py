@@ -173,7 +173,7 @@ def test_a_description_is_not_converted_into_itself(tmp_path: Path) -> None:
 
 
 def test_a_mistake_of_ours_is_called_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise RuntimeError("planted")
 
     monkeypatch.setattr("mbsym_cli.check.read_description", broken)
