@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import worded
@@ -14,10 +14,24 @@ from mbsym.problems.stabilisation.result import (
     Gyroscopic,
     Locus,
     Rank,
-    Region,
     Stabilisation,
 )
-from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, compared, joined, named, say
+from mbsym.report.content import (
+    Gaps,
+    Phrase,
+    Polynomial,
+    Relation,
+    Said,
+    Symbol,
+    compared,
+    joined,
+    named,
+    numbered,
+    say,
+)
+
+#: What signs are asked of, with a number.
+_SIGN = Symbol("Delta")
 
 
 def sentences(stabilisation: Stabilisation) -> Iterator[Said]:
@@ -82,12 +96,30 @@ def _gyroscopic(part: Gyroscopic) -> Iterator[Said]:
         )
         yield from _what_it_means(part, part.degree)
         return
-    for region in part.regions:
-        yield Said(
-            "Degree of instability of $K$ for [[names]] where [[where]]: [[degree]] (proved).",
-            {**names, "where": _where(region), "degree": str(region.degree)},
+    yield from _by_region(part)
+
+
+def _by_region(part: Gyroscopic) -> Iterator[Said]:
+    """The degrees, each with all its regions; by letters where the same signs are asked for again and again."""
+    factors = {str(x): x for region in part.regions for x, _ in region.signs}
+    letters: Mapping[str, Symbol | Formula] = factors
+    named_ones: Gaps = {"names": named(part.coordinates)}
+    text = "Degree of instability of $K$ for [[names]] where [[where]]: [[degree]] (proved)."
+    if len(part.regions) > 2:
+        letters = {name: symbol for name, (symbol, _) in zip(factors, numbered(_SIGN, factors.values()), strict=True)}
+        relations = tuple(Relation(letters[name], "=", x) for name, x in factors.items())
+        told = "The degree of instability of $K$ for [[names]] follows from the signs of [[signs]]."
+        yield Said(told, {**named_ones, "signs": relations})
+        text = "It is [[degree]] where [[where]] (proved)."
+    for degree in sorted({region.degree for region in part.regions}):
+        regions = (
+            joined((Relation(letters[str(x)], how, 0) for x, how in region.signs), ", ")
+            for region in part.regions
+            if region.degree == degree
         )
-        yield from _what_it_means(part, region.degree)
+        where = joined(regions, "; ", Said("or"), " ")
+        yield Said(text, {"where": where, "degree": str(degree), **(named_ones if "[[names]]" in text else {})})
+        yield from _what_it_means(part, degree)
 
 
 def _together(parts: Sequence[Gyroscopic]) -> Iterator[Said]:
@@ -109,10 +141,6 @@ def _together(parts: Sequence[Gyroscopic]) -> Iterator[Said]:
             "stabilise their first approximation.",
             gaps,
         )
-
-
-def _where(region: Region) -> tuple[Relation, ...]:
-    return tuple(Relation(x, relation, 0) for x, relation in region.signs)
 
 
 def _what_it_means(part: Gyroscopic, degree: int) -> Iterator[Said]:
