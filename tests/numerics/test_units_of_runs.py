@@ -529,7 +529,8 @@ def test_what_runs_away_is_a_blow_up_in_every_unit(unit: float) -> None:
 
 def test_a_size_of_1_in_whatever_unit_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     def careless(rates: Any, kinds: Any, begin: Any, states: Any) -> Magnitudes:
-        return Magnitudes(np.ones(states.shape), np.ones(len(begin)), np.ones(states.shape))
+        one = np.ones(states.shape)
+        return Magnitudes(one, np.ones(len(begin)), one, one)
 
     monkeypatch.setattr(runge_kutta, "magnitudes", careless)
     given, steps = scenario(SPRING), []

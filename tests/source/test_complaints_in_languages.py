@@ -25,15 +25,15 @@ loads:
 SAID = {
     "": (
         "wrong-shape]: a connection point has three components, not 2", "hint: components along the axes 1, 2, 3",
-        "unknown-key]: unknown key 'colour' in body 2", "errors; nothing was written.",
+        "unknown-key]: unknown key 'colour' in body 2", "errors: 5",
     ),
     "ru": (
         "wrong-shape]: точка соединения: составляющих три, а не 2", "совет: составляющие по осям 1, 2, 3",
-        "unknown-key]: тело 2: неизвестный ключ 'colour'", "ничего не записано.",
+        "unknown-key]: тело 2: неизвестный ключ 'colour'", "ошибок: 5",
     ),
     "es": (
         "wrong-shape]: un punto de conexión tiene tres componentes, no 2", "sugerencia: componentes según los ejes",
-        "unknown-key]: clave desconocida 'colour' en cuerpo 2", "no se escribió nada.",
+        "unknown-key]: clave desconocida 'colour' en cuerpo 2", "errores: 5",
     ),
 }  # fmt: skip
 CORPUS = sorted((Path(__file__).parents[1] / "invalid").iterdir())

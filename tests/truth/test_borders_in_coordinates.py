@@ -301,7 +301,8 @@ motion: {x: 0}
         ("k*x**6", "", Word.STABLE, ""),
         ("b*x**3", "", Word.UNDECIDED, ""),
         ("(b - k)*x**4/m", "", Word.UNDECIDED, "b - k"),
-        ("b*x**4", "rayleigh: k*x_dot**4", Word.UNDECIDED, ""),  # where b < 0 that is another theorem
+        # m x'' + 4 k x'^3 + 4 b x^3 = 0: the energy falls on every orbit but the rest, to a minimum of V or from none
+        ("b*x**4", "rayleigh: k*x_dot**4", Word.UNDECIDED, "b"),
         ("k*x**4", "rayleigh: b*x**2*x_dot**2", Word.UNDECIDED, ""),
         ("k*x**4", "rayleigh: b**2*x**2*x_dot**2", Word.STABLE, ""),
         # m x'' + d x' + V'(x) = 0: x' = -V'(x)/d + ... on the centre manifold
