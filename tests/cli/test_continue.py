@@ -273,15 +273,16 @@ def test_a_run_that_ended_stiff_goes_on_by_its_last_method(tmp_path: Path) -> No
     assert "method_changes" in refused.output
 
 
-def test_a_run_in_declared_variables_is_told_the_way_in_coordinates(tmp_path: Path) -> None:
-    """Of such a run no other is continued: what the hint says to do works."""
+def test_a_run_is_continued_in_its_own_variables(tmp_path: Path) -> None:
+    """In those that are declared, or in coordinates; one cannot go on in the other's."""
     name = SHIPPED / "clebsch-poisson.yaml"
-    runs = [("--out", str(tmp_path / "declared")), ("--variables", "coordinates", "--out", str(tmp_path / "angles"))]
-    for options in runs:
-        assert mbsym(name, "--time", "1", "--format", "csv", "--no-estimate", *options).exit_code == 0
-    refused = mbsym(name, "--time", "2", "--continue", str(tmp_path / "declared" / "simulation.json"))
-    assert refused.exit_code == 2
-    assert "hint: take the simulation.json of a run of this FILE with --variables coordinates" in refused.output
-    earlier = str(tmp_path / "angles" / "simulation.json")
-    words = ("--time", "2", "--format", "csv", "--no-estimate", "--out", str(tmp_path / "longer"))
-    assert mbsym(name, *words, "--variables", "coordinates", "--continue", earlier).exit_code == 0
+    kinds: dict[str, tuple[str, ...]] = {"declared": (), "coordinates": ("--variables", "coordinates")}
+    for kind, options in kinds.items():
+        words = ("--time", "1", "--format", "csv", "--no-estimate", "--out", str(tmp_path / kind), *options)
+        assert mbsym(name, *words).exit_code == 0
+    for kind, options in kinds.items():
+        for earlier in kinds:
+            file = str(tmp_path / earlier / "simulation.json")
+            words = ("--time", "2", "--format", "csv", "--no-estimate", "--out", str(tmp_path / "longer"), *options)
+            done = mbsym(name, *words, "--continue", file)
+            assert done.exit_code == (0 if earlier == kind else 2), done.output
