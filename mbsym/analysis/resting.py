@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeVar
 
@@ -71,33 +71,33 @@ def _decided(bare: System, listed: RelativeEquilibrium | EquilibriumFamily) -> V
     if isinstance(listed, EquilibriumFamily):
         if bare.constraints and known.because(Because.NOT_ENCLOSED):  # the constraints are singular there
             return known
-        return _decided_at(bare, listed.sample, listed, known)
+        return _decided_at(_at(bare, listed.sample, listed), known)
     if bare.constraints and listed.free and not any(map(known.because, _KNOWN_BETTER)):
         return known
-    at_zero = _decided_at(bare, (*listed.values, *(_sampled(bare, x, Fraction(0)) for x in listed.free)), listed, known)
-    free = () if bare.constraints and at_zero.word.open else _telling(bare, listed)
+
+    def sampled(free: Sequence[str], t: Fraction) -> _Rest:
+        return _at(bare, (*listed.values, *(_sampled(bare, name, t) for name in free)), listed)
+
+    zero = sampled(listed.free, Fraction(0))
+    at_zero = _decided_at(zero, known)
+    free = () if bare.constraints and at_zero.word.open else _telling(bare, listed.free, zero)
     if not free:
         return at_zero
-    words = {
-        _decided_at(bare, (*listed.values, *(_sampled(bare, name, t) for name in free)), listed, known).word
-        for t in map(fraction, ELSEWHERE)
-    }
+    words = {_decided_at(sampled(free, t), known).word for t in map(fraction, ELSEWHERE)}
     return also_elsewhere(at_zero, words, free)
 
 
-def _telling(bare: System, listed: RelativeEquilibrium) -> tuple[str, ...]:
+def _telling(bare: System, free: Sequence[str], zero: _Rest) -> tuple[str, ...]:
     """The coordinates of which the equations of motion know more than that any value is one of rest."""
+    if not free:
+        return ()
     try:
-        if bare.constraints:
-            balance = _at(bare, (*listed.values, *(_sampled(bare, x, Fraction(0)) for x in listed.free)), listed)[
-                0
-            ].balance
-            unseen = tuple(filter(balance.shifts, listed.free)) if isinstance(balance, ConstrainedBalance) else ()
-        else:
-            unseen = Analysis(bare, ()).balance.ignorable if listed.free else ()
+        balance = (zero.rest if bare.constraints else Analysis(bare, ())).balance
+        if isinstance(balance, ConstrainedBalance):
+            return tuple(name for name in free if not balance.shifts(name))
+        return tuple(free) if bare.constraints else tuple(name for name in free if name not in balance.ignorable)
     except (Failure, *NOT_THERE):
-        unseen = ()
-    return tuple(name for name in listed.free if name not in unseen)
+        return tuple(free)
 
 
 def _sampled(bare: System, name: str, t: Fraction) -> CoordinateValue:
@@ -106,10 +106,16 @@ def _sampled(bare: System, name: str, t: Fraction) -> CoordinateValue:
     return CoordinateValue(name, str(t), float(t) * math.pi / 12 if angle else float(t), angle, True)
 
 
-def _at(
-    bare: System, values: Sequence[CoordinateValue], listed: RelativeEquilibrium | EquilibriumFamily
-) -> tuple[Analysis, dict[str, Any]]:
-    """The rest at one place; coordinates that are not known exactly are parameters known by their enclosures."""
+@dataclass(frozen=True)
+class _Rest:
+    """A rest; coordinates that are not known exactly are parameters, ``enclosed`` by balls."""
+
+    rest: Analysis
+    enclosed: Mapping[str, Any]
+
+
+def _at(bare: System, values: Sequence[CoordinateValue], listed: RelativeEquilibrium | EquilibriumFamily) -> _Rest:
+    """The rest at one place."""
     known_places = {x.name: _exact(x) for x in values}
     enclosed = {
         f"{_PLACE}{name}": listed.enclosures[name]
@@ -125,20 +131,15 @@ def _at(
         if name not in follow and (name in places or not bare.constraints or name in described)
     )
     there = replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed)))
-    return Analysis(with_free_rates(there) if bare.constraints else there, ()), enclosed
+    return _Rest(Analysis(with_free_rates(there) if bare.constraints else there, ()), enclosed)
 
 
-def _decided_at(
-    bare: System,
-    values: Sequence[CoordinateValue],
-    listed: RelativeEquilibrium | EquilibriumFamily,
-    known: Verdict,
-) -> Verdict:
+def _decided_at(place: _Rest, known: Verdict) -> Verdict:
     """The verdict at one place."""
-    analysis, enclosed = _at(bare, values, listed)
+    analysis, enclosed = place.rest, place.enclosed
     try:
         judge = Judge(analysis)
-        if not bare.constraints:  # problem 6 knows symmetries that the list does not, and other words
+        if not analysis.system.constraints:  # problem 6 knows symmetries that the list does not, and other words
             return judge.decided(known, enclosed) if enclosed else judge({})
         better = any(map(known.because, _KNOWN_BETTER))
         verdict = known if better else judge.decided(known, enclosed)

@@ -137,13 +137,14 @@ class Rests(Failure):
     code = "rests"
 
     def __init__(self) -> None:
-        super().__init__("the initial state is an equilibrium, which every method keeps", remedy=BEGIN_BESIDE)
+        super().__init__("the initial state is an equilibrium, in which the exact motion rests", remedy=BEGIN_BESIDE)
 
 
 def begins_in_equilibrium(dynamics: Dynamics) -> bool:
     """Whether q' = 0 and q'' = 0 at the initial state, at every time: an exact motion never leaves it.
 
-    Seen in ``PRECISION`` bits, of equations without the time and without switches.
+    Seen in ``PRECISION`` bits, of equations without the time and without switches, whose slopes are finite there: on
+    Norton's dome, x'' = sqrt(x), a motion may leave what rests.
     """
     state = dynamics.scenario.state
     if any(state[dynamics.dimension - len(dynamics.system.velocities) :]) or dynamics.switches.outputs:
@@ -152,8 +153,11 @@ def begins_in_equilibrium(dynamics: Dynamics) -> bool:
         code = dynamics.right_hand_side
         if any(code.program.instructions[n].payload == "t" for n in code.program.live(code.outputs)):
             return False
-        rates = [float(abs(x).upper()) for x in enclosures(code, (Fraction(0), *state), PRECISION + 64)]
+        place = Fraction(0), *state
+        rates = [float(abs(x).upper()) for x in enclosures(code, place, PRECISION + 64)]
         if max(rates) > LARGEST_RESIDUE:
+            return False
+        if not all(x.is_finite() for x in enclosures(dynamics.jacobian, place, PRECISION + 64)):
             return False
         usual = about(dynamics, 0.0, [float(x) for x in state])
     except Failure:

@@ -357,6 +357,20 @@ def test_what_is_pushed_or_driven_is_in_no_equilibrium(start: str) -> None:
     assert not mbsym.simulate(mbsym.loads(text), 1).begins_in_equilibrium
 
 
+@pytest.mark.parametrize(("force", "begins"), [("sqrt(x)", False), ("x*sqrt(x**2 + 1)", True)])
+def test_where_slopes_are_infinite_what_rests_may_leave(force: str, begins: bool) -> None:
+    """Norton's dome: x'' = sqrt(x) has the solution t^4/144 beside x = 0."""
+    text = (
+        UPRIGHT[: UPRIGHT.index("bodies:")]
+        + f"""bodies:
+  - {{name: b, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: 1}}
+loads: [{{generalized force: {{x: {force}}}}}]
+initial: {{x: 0}}
+"""
+    )
+    assert mbsym.simulate(mbsym.loads(text), 1, estimate=False).begins_in_equilibrium is begins
+
+
 def test_small_motions_beside_zero_keep_their_digits() -> None:
     """a = 1e-13 cos(sqrt(g) t) below: what is no rounding of a position is followed to its own size."""
     run = mbsym.simulate(mbsym.loads(UPRIGHT.replace("ANGLE", "1/10^13")), 10)

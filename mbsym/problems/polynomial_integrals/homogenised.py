@@ -86,16 +86,21 @@ class InAnyField:
             listed.append((title + WITHOUT if constant else title, _filled(field, f, larger_grading.weights)))
         return polynomial_integrals(field, larger_grading, self.usual.degree, listed)
 
+    @property
+    def _needed(self) -> result.PolynomialIntegrals:
+        """The same where special values are looked for.  Raises NoClosedForm where there are none."""
+        if self._larger is None:
+            raise NoClosedForm(
+                "special values are looked for where there is one unit vector or angle at most, no root, and where no "
+                "constraint ties positions"
+            )
+        return self._larger
+
     def cases(self, positive: Sequence[str], budget: float) -> result.Cases:
         """``cases``; raises NoClosedForm where relations of the larger field are not homogeneous, too."""
         if self._as_it_is:
             return cases(self.usual, positive, budget)
-        larger = self._larger
-        if larger is None:
-            raise NoClosedForm(
-                "special parameters are looked for where there is one unit vector or angle at most, no root, and where "
-                "no constraint ties positions"
-            )
+        larger = self._needed
         special, down = cases(larger, positive, budget), _Down(larger)
         return replace(special, usual=self.usual, cases=tuple(down.case(case) for case in special.cases))
 
@@ -103,12 +108,7 @@ class InAnyField:
         """``along``; raises what that raises, and NoClosedForm as ``cases`` does."""
         if self._as_it_is:
             return along(self.usual, low, high)
-        larger = self._larger
-        if larger is None:
-            raise NoClosedForm(
-                "special values are looked for where there is one unit vector or angle at most, no root, and where no "
-                "constraint ties positions"
-            )
+        larger = self._needed
         listing, down = along(larger, low, high), _Down(larger)
         values = [_new_at_one(larger, value, down) for value in listing.values]
         fresh = tuple(value for value in values if value.integrals or value.levels)

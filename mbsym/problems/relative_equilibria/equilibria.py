@@ -119,7 +119,8 @@ def equilibria(
         carried = _carried(first)
         return _by_rates(carried, _listed(carried, first.system, within, limits or Limits(), len(carried.rows)))
     rank = rank_of(first) if rank is None else rank
-    if not all(x.is_zero() for x in first.kept) and all(x.is_zero() for x in first.at_rest):
+    tied = not all(x.is_zero() for x in first.kept)
+    if tied and not first.turning and all(x.is_zero() for x in first.at_rest):
         return Equilibria((), (), False, (EVERYWHERE,), everywhere=True)
     listed = _listed(first, first.system, within, limits or Limits(), rank, described_place(system, first, values))
     if not listed.families:

@@ -102,23 +102,26 @@ def _gyroscopic(part: Gyroscopic) -> Iterator[Said]:
 def _by_region(part: Gyroscopic) -> Iterator[Said]:
     """The degrees, each with all its regions; by letters where the same signs are asked for again and again."""
     factors = {str(x): x for region in part.regions for x, _ in region.signs}
+    names: Gaps = {"names": named(part.coordinates)}
     letters: Mapping[str, Symbol | Formula] = factors
-    named_ones: Gaps = {"names": named(part.coordinates)}
-    text = "Degree of instability of $K$ for [[names]] where [[where]]: [[degree]] (proved)."
-    if len(part.regions) > 2:
+    several = len(part.regions) > 2
+    if several:
         letters = {name: symbol for name, (symbol, _) in zip(factors, numbered(_SIGN, factors.values()), strict=True)}
         relations = tuple(Relation(letters[name], "=", x) for name, x in factors.items())
-        told = "The degree of instability of $K$ for [[names]] follows from the signs of [[signs]]."
-        yield Said(told, {**named_ones, "signs": relations})
-        text = "It is [[degree]] where [[where]] (proved)."
+        text = "The degree of instability of $K$ for [[names]] follows from the signs of [[signs]]."
+        yield Said(text, {**names, "signs": relations})
     for degree in sorted({region.degree for region in part.regions}):
         regions = (
             joined((Relation(letters[str(x)], how, 0) for x, how in region.signs), ", ")
             for region in part.regions
             if region.degree == degree
         )
-        where = joined(regions, "; ", Said("or"), " ")
-        yield Said(text, {"where": where, "degree": str(degree), **(named_ones if "[[names]]" in text else {})})
+        gaps: Gaps = {"where": joined(regions, "; ", Said("or"), " "), "degree": str(degree)}
+        if several:
+            yield Said("It is [[degree]] where [[where]] (proved).", gaps)
+        else:
+            text = "Degree of instability of $K$ for [[names]] where [[where]]: [[degree]] (proved)."
+            yield Said(text, {**names, **gaps})
         yield from _what_it_means(part, degree)
 
 
