@@ -129,7 +129,7 @@ def _linearisation(analysis: Analysis) -> Check | None:
 
         return given.check(analysis)
     linear, closed = analysis.optional("linearisation"), _closed(analysis)
-    if linear is None or closed is None or linear.constrained is not None:
+    if linear is None or closed is None or linear.about.ties:
         return None
     return comparison.check_linearisation(analysis.ring, linear, linearised(analysis, closed))
 
@@ -138,7 +138,7 @@ def _perturbed(analysis: Analysis) -> Check | None:
     linear = analysis.optional("linearisation")
     if linear is None or analysis.system.linear is not None:
         return None
-    if linear.constrained is not None:
+    if linear.about.ties:
         from mbsym.problems.reduction_check import check_reduced_perturbation
 
         # a motion that breaks the constraints' rows has no first approximation: the routes leave the rows differently

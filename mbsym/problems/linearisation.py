@@ -32,7 +32,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from mbsym.algebra.elimination import Definition, combination
 from mbsym.algebra.jet import Jet, Jets
@@ -58,9 +57,6 @@ from mbsym.mechanics.newton_euler import applied_forces
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
-
-if TYPE_CHECKING:
-    from mbsym.problems.reduction import Reduction
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,6 +95,48 @@ class Varying:
 
 
 @dataclass(frozen=True, repr=False)
+class Reduction(Shown):
+    """Which quantities the first approximation is about; without constraints all coordinates are independent.
+
+    ``coordinates`` and ``speeds`` are the independent ones, ``dependent_coordinates`` and ``dependent_speeds`` the
+    others; ``idle`` are independent coordinates that no equation of the speeds depends on, ``following`` those that are
+    felt although their velocities are dependent.  ``rates`` are velocities of the motion that follow from the
+    constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every constraint is one between
+    coordinates, as it is given.  ``family``: the derivatives of the coordinate, and of its velocity, by the parameters
+    that stand in the motion only, of every speed and then of all that follow: by these the description gives a family
+    of motions.  ``leaf``: how many relations between coordinates the velocity constraints keep, all of them proved to
+    be integrable, so that the first approximation is that on the leaf of the motion; 0 where they are not.
+    """
+
+    coordinates: tuple[str, ...]
+    speeds: tuple[str, ...]
+    dependent_coordinates: tuple[str, ...] = ()
+    dependent_speeds: tuple[str, ...] = ()
+    idle: tuple[str, ...] = ()
+    rates: tuple[tuple[str, Formula], ...] = ()
+    assumed: tuple[Formula, ...] = ()
+    holonomic: bool = True
+    family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...] = ()
+    following: tuple[str, ...] = ()
+    leaf: int = 0
+
+    @property
+    def about(self) -> tuple[str, ...]:
+        """The coordinates of the first approximation: those of the speeds, then those that follow."""
+        return (*self.speeds, *self.following)
+
+    @property
+    def ties(self) -> bool:
+        """Whether velocities depend on others, by constraints."""
+        return bool(self.dependent_speeds)
+
+    @property
+    def rates_by_name(self) -> dict[str, Polynomial]:
+        """``rates`` as a mapping."""
+        return {name: rate.polynomial for name, rate in self.rates}
+
+
+@dataclass(frozen=True, repr=False)
 class Linearisation(Shown):
     """Matrices n x n in physical time and declared parameters; ``subsystems`` as a paper prints them.
 
@@ -107,10 +145,10 @@ class Linearisation(Shown):
     about constant coefficients (Lagrange, Kelvin-Chetaev, eigenvalues) says anything about it.
 
     ``B`` (n x m, in physical time) belongs to the m ``inputs``; None where there are none.  Of a constrained system the
-    ``coordinates`` are the independent ones, and ``constrained`` says what became of the others.
+    ``coordinates`` are the independent ones; ``about`` says what became of the others.
     """
 
-    coordinates: tuple[str, ...]
+    about: Reduction
     M: Matrix
     D: Matrix
     G: Matrix
@@ -122,7 +160,11 @@ class Linearisation(Shown):
     varying: tuple[Varying, ...] = ()
     inputs: tuple[str, ...] = ()
     B: Matrix | None = None
-    constrained: Reduction | None = None
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Those of the rows and columns."""
+        return self.about.about
 
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
@@ -264,9 +306,9 @@ def assemble(
     whole: tuple[ScalarMatrix[Polynomial], ...],
     route: str,
     inputs: tuple[str, ...],
-    coordinates: tuple[str, ...] | None = None,
+    about: Reduction | None = None,
 ) -> Linearisation:
-    """The matrices of  M x'' + C x' + S x = B u  made a result: ``whole`` is M, C, S, B, by ``coordinates``.
+    """The matrices of  M x'' + C x' + S x = B u  made a result: ``whole`` is M, C, S, B, by ``about.about``.
 
     Relations and conditions of existence are used, then C and S are split into symmetric and skew parts.
     """
@@ -277,7 +319,7 @@ def assemble(
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
     result = Linearisation(
-        coordinates=scene.system.coordinates if coordinates is None else coordinates,
+        about=about or Reduction(scene.system.coordinates, scene.system.coordinates),
         M=Matrix.of(ring, M.rows),
         D=Matrix.of(ring, symmetric(C).rows),
         G=Matrix.of(ring, skew(C).rows),

@@ -29,9 +29,8 @@ from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
 from mbsym.mechanics.states import SEED
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, Check, NoMotionThere, Pair, agreement, decide
-from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.linearisation import Linearisation, Reduction
 from mbsym.problems.perturbation import Dependent, has_rational_states, matrix_pairs, unperturbed_state
-from mbsym.problems.reduction import Reduction
 
 ROUTE = Message("[[principle]], with multipliers", principle=D_ALEMBERT)
 
@@ -60,8 +59,7 @@ def check_reduced_motion(
 
 def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
     """Problem 5; undecided where a condition of problem 4 is solved for no parameter."""
-    about = linear.constrained
-    assert about is not None
+    about = linear.about
 
     def pairs(balls: bool) -> list[Pair]:
         place = _Disturbed(system, ring, about, dependent, balls)

@@ -112,7 +112,7 @@ def test_the_bicycle_has_the_published_roots(bicycle: Analysis, speed: int) -> N
 
 
 def test_the_bicycle_is_told_by_what_remains(bicycle: Analysis) -> None:
-    about = bicycle.linearisation.constrained
+    about = bicycle.linearisation.about
     assert about is not None
     assert not about.holonomic
     assert about.speeds == ("roll", "rear", "steer")
@@ -170,8 +170,8 @@ def test_a_parallelogram_swings_as_a_pendulum() -> None:
     assert found.coordinates == ("a",)
     assert [str(x[0, 0]) for x in (found.M, found.K)] == ["m*l**2", "m*l*g + k"]
     assert all(x.is_zero for x in (found.D[0, 0], found.G[0, 0], found.N[0, 0]))
-    assert found.constrained is not None
-    assert found.constrained.holonomic
+    assert found.about.ties
+    assert found.about.holonomic
     check = analysis.check("perturbed motion")
     assert check is not None
     assert check.outcome == EXACT
