@@ -117,9 +117,7 @@ def _independent(
 ) -> tuple[Matrix, Column, list[Variable], dict[int, Polynomial]]:
     """M, f and u of the independent speeds, and what the others are."""
     tied, embedded = equations.constraints, equations.embedded
-    if tied is None or reduced is None:
-        return equations.mass_matrix, equations.forcing, list(form.speeds), {}
-    if tied.position_rank or reduced.about.leaf:
+    if tied.position_rank or (reduced is not None and reduced.about.leaf):
         raise NoClosedForm("constraints tie positions: their deviations are not free")
     if tied.solved is None or embedded is None:
         raise NoClosedForm("the equations without multipliers outgrow the budget of terms")
