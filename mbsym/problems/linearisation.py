@@ -5,15 +5,14 @@
 with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (circulatory); v are the deviations of the
 inputs from the values at which they are held, B = dQ/du (0 on the right where the system has no inputs).  Two routes:
 
-1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion q0(t), f0 = f - M q0'':
-   C = -df0/dq', S = -df0/dq, B = df0/du, of which D and G are the symmetric and the skew part of C, K and N those of S;
-2. the Lagrangian is expanded to second order while it is built (quadratisation; Banshchikov & Vetrov, Problem 5):
-   with L2 = x'.M x'/2 + x'.A x - x.P x/2 the equations are
+1. the residuals M q'' - f of the equations are expanded to first order while they are built, about q0(t), by a
+   recursion over truncated polynomials in the deviations, so that the nonlinear equations are never formed; constraints
+   are expanded beside them (``mbsym.problems.reduction``).  The acceleration of a prescribed motion, and that of q0(t),
+   enter through the bodies' accelerations: a lift gives K = m l (g + a) through it;
+2. the nonlinear equations M(q) q'' = f, where they are derived, are differentiated on the motion: C = -df0/dq',
+   S = -df0/dq, B = df0/du with f0 = f - M q0''.
 
-       M x'' + (dM/dt + A - A^T) x' + (dA/dt + P) x = (linear part of Q),
-
-   d/dt along the unperturbed motion, where prescribed quantities, steadily turning coordinates and t run: the
-   acceleration of a prescribed motion stands in dA/dt (a lift gives K = m l (g + a) through it).
+Of C the symmetric part is D and the skew part G, of S these are K and N.
 
 Subsystems are the connected components of the coordinates under all five matrices.  With a time scale w the time is
 tau = w t: M stays, D and G are divided by w, K and N by w^2.
@@ -40,20 +39,16 @@ from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
-from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.motion import (
     motion_derivatives,
     motion_values,
-    rate_on_motion,
     relations,
     steadied,
     turning,
     unperturbed,
     unsteady,
 )
-from mbsym.mechanics.newton_euler import applied_forces
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
@@ -206,34 +201,8 @@ class Linearisation(Shown):
         )
 
 
-def by_quadratisation(scene: Scene, expanded: Scene[Jet], equilibrium: Equilibrium | None) -> Linearisation:
-    """Route 2, from the system over jets (``quadratised``): never forms the nonlinear equations.
-
-    Raises NoClosedForm or SingularPoint.
-    """
-    ring, n, inputs = scene.ring, len(scene.system.coordinates), expanded.system.input_names
-    L = kinetic_energy(expanded) + force_function(expanded)
-    Q = list(applied_forces(expanded).values())
-
-    def second(rows: int, columns: int) -> ScalarMatrix[Polynomial]:
-        return ScalarMatrix.by_entry(ring, n, n, lambda i, j: _second(ring, L, rows + i, columns + j))
-
-    def slopes(start: int, count: int) -> ScalarMatrix[Polynomial]:
-        return ScalarMatrix.by_entry(ring, n, count, lambda i, j: Q[i].degree(1).get((start + j,), ring.zero))
-
-    def rate(matrix: ScalarMatrix[Polynomial]) -> ScalarMatrix[Polynomial]:
-        return matrix.map(lambda x: rate_on_motion(scene, x))
-
-    x, v, u = 0, n, 2 * n  # where the deviations of coordinates, velocities and inputs begin
-    M, A, P = second(v, v), second(v, x), -second(x, x)
-    C = A - A.T + rate(M) - slopes(v, n)
-    S = P + rate(A) - slopes(x, n)
-    B = slopes(u, len(inputs))
-    return assemble(scene, equilibrium, (M, C, S, B), "quadratised Lagrangian", inputs)
-
-
 def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | None) -> Linearisation:
-    """Route 1: differentiates the nonlinear equations on the unperturbed motion.
+    """Route 2: differentiates the nonlinear equations on the unperturbed motion.
 
     Raises NoClosedForm or SingularPoint.
     """
@@ -292,12 +261,6 @@ def quadratised(scene: Scene, whole: System | None = None, order: int = 2) -> Sc
     for name, value in held.items():
         environment[name] = jets.deviation(numbers[name], value)
     return Scene(system, jets, environment, ring)
-
-
-def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
-    """d^2/dx_i dx_j."""
-    value: Polynomial = x.second.get((min(i, j), max(i, j)), ring.zero)
-    return value * 2 if i == j else value
 
 
 def assemble(

@@ -1,4 +1,4 @@
-"""Problems 4 and 5 of constrained systems: the motion, and what remains of the coordinates in the first approximation.
+"""Problems 4 and 5: the motion, and what constraints leave of the coordinates in the first approximation.
 
 The motion exists where the constraints hold on it and the forces that they do not carry vanish,
 
@@ -132,8 +132,8 @@ def _of_the_motion_alone(scene: Scene) -> list[int]:
     return [index for index in indices if index not in inner]
 
 
-def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> Linearisation:
-    """Problem 5 of a constrained system: the equations of the speeds, and x_f' - S eta - T x = 0 of what follows.
+def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium | None) -> Linearisation:
+    """Problem 5: the equations of the independent speeds, and x_f' - S eta - T x = 0 of what follows.
 
     Raises SingularPoint, NoClosedForm.
     """
@@ -156,4 +156,4 @@ def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> L
         gains.append([ring.zero] * len(inputs))
     a, b, c, d = (ScalarMatrix(ring, rows) for rows in (mass, velocity, position, gains))
     parts = (a, b, c, d)
-    return assemble(scene, equilibrium, parts, "constraints expanded, equations projected", inputs, about)
+    return assemble(scene, equilibrium, parts, "Newton-Euler recursion to first order", inputs, about)

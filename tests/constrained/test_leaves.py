@@ -13,8 +13,8 @@ import pytest
 from conftest import analysed
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.analysis import approximation
 from mbsym.analysis.pipeline import Analysis
-from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis, integrability
 from mbsym.problems.stability.words import Because, Word
@@ -116,14 +116,14 @@ def test_multipliers_agree() -> None:
 
 def test_a_stiffness_that_forgets_the_leaf_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """C of the independent coordinates in place of C Y_0."""
-    original = perturbed.on_leaf
+    original = approximation.on_leaf
 
     def wrong(scene: Any, found: Any, equations: Any) -> Any:
         there, own = original(scene, found, equations)
         short = tuple(row[: len(own.A)] for row in equations.C)
         return there, dataclasses.replace(own, C=short)
 
-    monkeypatch.setattr(perturbed, "on_leaf", wrong)
+    monkeypatch.setattr(approximation, "on_leaf", wrong)
     check = bead().check("perturbed motion")
     assert check is not None
     assert check.outcome == FAILED
