@@ -59,8 +59,8 @@ def data(equations: Equations, system: System, write: Write) -> doc.Equations:
         kane = cast("SpeedEquations", equations)
         own = {name: getattr(kane, name) for name in ("speeds", "needed", "supplied", "aside")}
         own["positions"] = zip(kane.positions, kane.rates, strict=True)
-    constraints = _constraints(tied, write) if tied.names else UNSET
-    return doc.Equations.from_result(equations, write, constraints=constraints, **own)
+    own |= {"constraints": _constraints(tied, write)} if tied.names else {"constraints": UNSET, "embedded": UNSET}
+    return doc.Equations.from_result(equations, write, **own)
 
 
 def _constraints(constraints: Constraints, write: Write) -> doc.Constraints:
