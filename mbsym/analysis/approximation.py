@@ -22,13 +22,13 @@ from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, Number, Operation, children, names, number, walk
 from mbsym.formulas.formula import Column, Formula, column
 from mbsym.mechanics import newton_euler
-from mbsym.mechanics.constraints.expansion import expansion, felt, on_leaf, projected
+from mbsym.mechanics.expansion import expansion, felt, given_motion, on_leaf, over_jets, projected
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import is_steady, motion_values, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import MotionEntry, Relation, System
-from mbsym.problems import equilibrium, linearisation
+from mbsym.problems import equilibrium
 from mbsym.problems.equilibrium import Displacement, Equilibrium
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.reduction import Reduced, by_projection, reduction
@@ -51,7 +51,7 @@ MOST_LISTED = 12
 def expanded(analysis: Analysis) -> Scene:
     """The system over second-order jets about the unperturbed motion.  Raises Unavailable where none is given."""
     _demand_motion(analysis)
-    return linearisation.quadratised(analysis.parameters_scene, analysis.system)
+    return over_jets(analysis.parameters_scene, given_motion(analysis.parameters_scene), analysis.system, 2)
 
 
 def reduced(analysis: Analysis) -> Reduced:
@@ -135,7 +135,8 @@ def _rests_at_zero(analysis: Analysis) -> bool | None:
         except Unavailable:
             return False
     try:
-        resting_scene, moving = (linearisation.quadratised(resting.parameters_scene, resting.system, k) for k in (0, 1))
+        scene = resting.parameters_scene
+        resting_scene, moving = (over_jets(scene, given_motion(scene), resting.system, k) for k in (0, 1))
         values = [-x.value for x in newton_euler.residuals(resting_scene).values()]  # nothing deviates here
         rest_state = equilibrium.equilibrium(resting.parameters_scene, values, resting.signs)
         if rest_state.satisfied and equilibrium.singular_displacements(moving, lambda: resting.expanded):

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.mechanics.constraints.expansion import OnManifold
+    from mbsym.mechanics.expansion import OnManifold
     from mbsym.problems.dissipation import Balance
     from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms
 
@@ -324,7 +324,7 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     Raises NotExpanded where the motion is none, where constraints know the time or are not known to be integrable, or
     where their rank on the motion is not that near it.
     """
-    from mbsym.mechanics.constraints.expansion import on_manifold
+    from mbsym.mechanics.expansion import on_manifold
     from mbsym.problems.normal_forms.expansion import NotExpanded
 
     system, scene, tied = analysis.system, analysis.parameters_scene, analysis.constraints

@@ -15,7 +15,7 @@ motion; so those of a quaternion, e_0 . delta e = 0.  Where the motion is not st
 such A.
 
 Second route: with T = d(s, u)/d(q, eta) on the motion and A_q that of the generalised coordinates,  A T = T' + T A_q,
-eta the generalised velocities, or those that constraints leave (``mechanics.constraints.expansion``);
+eta the generalised velocities, or those that constraints leave (``mechanics.expansion``);
 the rows of a quaternion there are  de/dq_i = 1/2 e o w_i,  w_i the axis about which q_i turns, in those of the body.
 """
 
@@ -32,7 +32,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import divide, number, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, Shown, column
-from mbsym.mechanics.constraints.expansion import reached
+from mbsym.mechanics.expansion import reached
 from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.motion import motion_values, unperturbed_with, unsteady

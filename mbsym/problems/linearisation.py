@@ -33,7 +33,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mbsym.algebra.elimination import Definition, combination
-from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
 from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.ring import Polynomial, Ring
@@ -41,15 +40,11 @@ from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import (
-    motion_derivatives,
-    motion_values,
     relations,
     steadied,
-    turning,
     unperturbed,
     unsteady,
 )
-from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 
@@ -228,39 +223,6 @@ def with_inertia(scene: Scene, equations: Equations) -> list[Polynomial]:
         x.polynomial - sum(map(ring.times, row, accelerations), ring.zero)
         for x, row in zip(equations.forcing, equations.mass_matrix.polynomials, strict=True)
     ]
-
-
-def quadratised(scene: Scene, whole: System | None = None, order: int = 2) -> Scene[Jet]:
-    """The system over jets of ``order`` about the unperturbed motion; with ``whole`` its inputs deviate, too.
-
-    Deviations are numbered: x_i is i, x'_i is n + i, that of input k is 2 n + k.
-    """
-    ring, system = scene.ring, whole or scene.system
-    names, values = system.coordinates, motion_values(system)
-    spinning = set(turning(scene))
-    at_rest = {name: value for name, (value, _) in values.items() if name not in spinning}
-    lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()}
-    numbers = {name: i for i, name in enumerate(names)}
-    held = {system_input.name: scene.lower(system_input.held) for system_input in system.inputs}
-    numbers |= {system_input.name: 2 * len(names) + k for k, system_input in enumerate(system.inputs)}
-    jets = Jets(
-        ring,
-        at_rest | {system_input.name: system_input.held for system_input in system.inputs},
-        numbers,
-        lowered | held,
-        order,
-    )
-    environment = {name: Jet(value) for name, value in scene.environment.items()}
-    derivatives = motion_derivatives(system)
-    for i, name in enumerate(names):
-        speed, acceleration = (scene.lower(x) for x in derivatives[name])
-        base = scene.environment[name] if name in spinning else scene.lower(values[name][0])
-        environment[name] = jets.deviation(i, base)
-        environment[velocity_name(name)] = jets.deviation(len(names) + i, speed)
-        environment[acceleration_name(name)] = Jet(acceleration)
-    for name, value in held.items():
-        environment[name] = jets.deviation(numbers[name], value)
-    return Scene(system, jets, environment, ring)
 
 
 def assemble(

@@ -4,7 +4,7 @@ The motion exists where the constraints hold on it and the forces that they do n
 
     f(q, t) = 0,    J q' + j = 0,    J q'' + (J' q' + j') = 0,    Y^T (M q'' - f) = 0    (J Y = 0),
 
-and its first approximation is that of the independent quantities (``mbsym.mechanics.constraints.expansion``): dependent
+and its first approximation is that of the independent quantities (``mbsym.mechanics.expansion``): dependent
 ones are expanded, not solved for.  Coordinates that no equation of the speeds feels drop out.  A coordinate that is
 felt although its velocity is dependent (the place of a sphere in a dish, where it is told by its angles) follows the
 others by an equation of first order of its own,
@@ -31,7 +31,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import names as names_of
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.constraints.expansion import Expansion, Projected, Row, echelon, felt
+from mbsym.mechanics.expansion import Expansion, Projected, Row, echelon, felt
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import expressions
 from mbsym.problems.equilibrium import Equilibrium

@@ -8,7 +8,7 @@ in physical time and declared parameters, on the right the matrices of problem 5
 are held, y0 those of the outputs on the unperturbed motion.  M^-1 is the adjugate over the determinant, exactly in the
 ring, part by part of what M couples.
 
-Under constraints it is the whole flow on what they allow (``mbsym.mechanics.constraints.expansion``): x = (q_i, nu_k)
+Under constraints it is the whole flow on what they allow (``mbsym.mechanics.expansion``): x = (q_i, nu_k)
 with the independent coordinates and the independent velocities, which need not be of the same coordinates, none of
 them left out,
 
@@ -37,7 +37,7 @@ from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Matrix, Shown
-from mbsym.mechanics.constraints.expansion import combined, on_base
+from mbsym.mechanics.expansion import combined, on_base
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import steadied
 from mbsym.model.system import velocity_name

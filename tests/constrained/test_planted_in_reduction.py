@@ -11,7 +11,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.analysis import approximation
-from mbsym.mechanics.constraints import expansion
+from mbsym.mechanics import expansion
 from mbsym.problems.checks import FAILED
 
 

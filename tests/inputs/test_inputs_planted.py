@@ -26,7 +26,7 @@ DRIVEN = {
 MISTAKES = [
     Mistake(
         "the sign of B in one route",
-        "mechanics.constraints.expansion:projected",
+        "mechanics.expansion:projected",
         "tuple(-x for x in row)",
         "tuple(x for x in row)",
         "driven",
@@ -42,7 +42,7 @@ MISTAKES = [
     ),
     Mistake(
         "the values of inputs in matrices of the other route",
-        "mechanics.constraints.expansion:over_jets",
+        "mechanics.expansion:over_jets",
         "jets.deviation(numbers[name], value)",
         "jets.deviation(numbers[name], ring.zero)",
         "driven",

@@ -671,7 +671,7 @@ CAUGHT = [
     ),
     Mistake(
         "the gyroscopic matrix transposed in one route",
-        "mechanics.constraints.expansion:projected",
+        "mechanics.expansion:projected",
         "B=_cut(scene, forms, speeds)",
         "B=tuple(zip(*_cut(scene, forms, speeds), strict=True))",
         "spinning",
@@ -687,7 +687,7 @@ CAUGHT = [
     ),
     Mistake(
         "accelerations that do not deviate",
-        "mechanics.constraints.expansion:over_jets",
+        "mechanics.expansion:over_jets",
         "jets.deviation(2 * n + i, base.accelerations[i])",
         "Jet(base.accelerations[i])",
         "spinning",
@@ -703,7 +703,7 @@ CAUGHT = [
     ),
     Mistake(
         "velocities that do not deviate",
-        "mechanics.constraints.expansion:projected",
+        "mechanics.expansion:projected",
         "*found.velocities, ",
         "*([{}] * n), ",
         "spinning",

@@ -20,7 +20,7 @@ from mbsym.algebra.signs import Signs
 from mbsym.expressions.rates import velocity_name
 from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.constraints.embedding import projected
-from mbsym.mechanics.constraints.expansion import echelon
+from mbsym.mechanics.expansion import echelon
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.equations import Embedded, Equations
