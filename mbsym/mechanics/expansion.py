@@ -252,21 +252,19 @@ def over_jets(scene: Scene, base: Base, whole: System | None = None, order: int 
 
 def given_motion(scene: Scene) -> Base:
     """The motion as the description gives it (``scene`` over the ring)."""
-    system, images = scene.system, relations(scene)
-    derivatives, led = motion_derivatives(system), _led(system)
-    rates, accelerations = (tuple(scene.lower(derivatives[name][k]) for name in system.coordinates) for k in (0, 1))
-    moving = (
+    derivatives, names = motion_derivatives(scene.system), scene.system.coordinates
+    rates, accelerations = (tuple(scene.lower(derivatives[name][k]) for name in names) for k in (0, 1))
+    return _turning(scene, Base((), frozenset(), rates, accelerations, {}), _moved(scene, rates))
+
+
+def _moved(scene: Scene, rates: Iterable[Polynomial]) -> frozenset[str]:
+    """The coordinates with these rates that turn steadily: those that no function of time leads, relations used."""
+    values, derivatives, images = motion_values(scene.system), motion_derivatives(scene.system), relations(scene)
+    return frozenset(
         name
-        for name, rate in zip(system.coordinates, rates, strict=True)
-        if name not in led and not scene.ring.substitute(rate, images).is_zero()
+        for name, rate in zip(scene.system.coordinates, rates, strict=True)
+        if derivatives[name][0] == values[name][1] and not scene.ring.substitute(rate, images).is_zero()
     )
-    return _turning(scene, Base((), frozenset(), rates, accelerations, {}), moving)
-
-
-def _led(system: System) -> set[str]:
-    """The coordinates that free functions of time lead."""
-    values, derivatives = motion_values(system), motion_derivatives(system)
-    return {name for name in system.coordinates if derivatives[name][0] != values[name][1]}
 
 
 def _turning(scene: Scene, base: Base, names: Iterable[str]) -> Base:
@@ -281,14 +279,13 @@ def _turning(scene: Scene, base: Base, names: Iterable[str]) -> Base:
 
 def _completed(scene: Scene, signs: Signs) -> Base:
     """The motion with the rates and accelerations that follow from the constraints where none are given."""
-    names, led = scene.system.coordinates, _led(scene.system)
     specified = {entry.coordinate for entry in scene.system.motion}
-    open_ones = [i for i, name in enumerate(names) if name not in specified]
+    open_ones = [i for i, name in enumerate(scene.system.coordinates) if name not in specified]
     still = given_motion(scene)
     still = replace(still, related=_related(scene, still.rates))
     for _ in range(MOST_ROUNDS):
         moving = replace(still, rates=_followed(scene, signs, still, still.rates, open_ones, "g"))
-        turning = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()} - led
+        turning = _moved(scene, moving.rates)
         related = _related(scene, moving.rates)
         if turning <= still.turning and related == still.related:
             return replace(moving, accelerations=_followed(scene, signs, moving, still.accelerations, open_ones, "h"))
