@@ -312,8 +312,6 @@ def _sign_at(ring: Ring, values: Mapping[str, Any]) -> Callable[[Polynomial], st
 
 def on_a_leaf(analysis: Analysis) -> bool:
     """Whether velocity constraints keep relations that a disturbance may change."""
-    if not analysis.system.constraints:
-        return False
     about = analysis.reduced.about
     return about.leaf > 0 or not about.holonomic
 
