@@ -5,7 +5,7 @@ numbers, sine and cosine of an angle, reciprocals, roots, and a normal form.  Th
 
 =============  ===============================================  =========================================
 ``Ring``       polynomials modulo sin^2 + cos^2 = 1             closed formulas, exact zero test
-``Jet``        truncated Taylor polynomials over the ring       the quadratised Lagrangian, normal forms
+``Jet``        truncated Taylor polynomials over the ring       the first approximation, normal forms
 ``Program``    nodes of a straight-line program                 compact code
 ``Rationals``  ``fmpq``                                         exact agreement at rational states
 ``Balls``      ``arb``                                          rigorous enclosures where roots are not rational

@@ -22,19 +22,20 @@ from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, Number, Operation, children, names, number, walk
 from mbsym.formulas.formula import Column, Formula, column
 from mbsym.mechanics import newton_euler
+from mbsym.mechanics.expansion import expansion, felt, given_motion, on_leaf, over_jets, projected
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import is_steady, motion_values, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import MotionEntry, Relation, System
-from mbsym.problems import equilibrium, linearisation
+from mbsym.problems import equilibrium
 from mbsym.problems.equilibrium import Displacement, Equilibrium
 from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.reduction import Reduced, by_projection, reduction
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.formulas.formula import Matrix
-    from mbsym.problems.reduction import Reduced
 
 
 #: What stands for the description in commands that are advised.
@@ -50,14 +51,11 @@ MOST_LISTED = 12
 def expanded(analysis: Analysis) -> Scene:
     """The system over second-order jets about the unperturbed motion.  Raises Unavailable where none is given."""
     _demand_motion(analysis)
-    return linearisation.quadratised(analysis.parameters_scene, analysis.system)
+    return over_jets(analysis.parameters_scene, given_motion(analysis.parameters_scene), analysis.system, 2)
 
 
 def reduced(analysis: Analysis) -> Reduced:
-    """A constrained system to first order about the unperturbed motion.  Raises Unavailable where none is given."""
-    from mbsym.mechanics.constraints.expansion import expansion, felt, on_leaf, projected
-    from mbsym.problems.reduction import Reduced, reduction
-
+    """The system to first order about the unperturbed motion.  Raises Unavailable where none is given."""
     _demand_motion(analysis)
     scene, names = analysis.parameters_scene, analysis.system.coordinates
     first_order = expansion(scene, analysis.signs, analysis.system)
@@ -92,10 +90,7 @@ def kept_by_velocities(analysis: Analysis) -> int:
 
 def residuals(analysis: Analysis) -> Column:
     """-f of every equation of motion on the unperturbed motion, and what constraints demand of it before these."""
-    ring = analysis.ring
-    if analysis.system.constraints:
-        return column(ring, analysis.reduced.residuals)
-    return column(ring, [-x.value for x in newton_euler.residuals(analysis.expanded).values()])
+    return column(analysis.ring, analysis.reduced.residuals)
 
 
 def beside(analysis: Analysis, singular: Sequence[Displacement]) -> list[Polynomial]:
@@ -140,7 +135,8 @@ def _rests_at_zero(analysis: Analysis) -> bool | None:
         except Unavailable:
             return False
     try:
-        resting_scene, moving = (linearisation.quadratised(resting.parameters_scene, resting.system, k) for k in (0, 1))
+        scene = resting.parameters_scene
+        resting_scene, moving = (over_jets(scene, given_motion(scene), resting.system, k) for k in (0, 1))
         values = [-x.value for x in newton_euler.residuals(resting_scene).values()]  # nothing deviates here
         rest_state = equilibrium.equilibrium(resting.parameters_scene, values, resting.signs)
         if rest_state.satisfied and equilibrium.singular_displacements(moving, lambda: resting.expanded):
@@ -168,11 +164,7 @@ def first_approximation(analysis: Analysis) -> Linearisation:
         reason = Message("on the given motion the equations, in symbols, still vary with [[varying]]", varying=varying)
         hint = steady_order(analysis) or "it is no steady motion in these coordinates, or only at special parameters"
         raise Unavailable("motion", NoResult(reason, hint, "not steady", "not-steady"))
-    if analysis.system.constraints:
-        from mbsym.problems.reduction import by_projection
-
-        return by_projection(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
-    return linearisation.by_quadratisation(analysis.parameters_scene, analysis.expanded, analysis.equilibrium)
+    return by_projection(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
 
 
 def _motion_beside(analysis: Analysis) -> tuple[str, Formula] | None:

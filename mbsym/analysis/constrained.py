@@ -30,6 +30,7 @@ from mbsym.model.substitution import told_by, without_explicit_relations
 from mbsym.model.system import Prescribed
 from mbsym.problems import equations, perturbation
 from mbsym.problems.checks import Check
+from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.equations import Equations
 
 if TYPE_CHECKING:
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.mechanics.states import Oracles
     from mbsym.model.system import System
-    from mbsym.problems.constraints.result import Constraints
     from mbsym.problems.integrals import Integral
     from mbsym.problems.reactions import Reaction
 
@@ -123,14 +123,15 @@ def in_parameters(ring: Ring, x: Polynomial) -> Expression | None:
 
 def constraints_of(analysis: Analysis) -> Constraints:
     """The rows, their ranks and what they leave free."""
-    from mbsym.problems.constraints.analysis import constraints
+    system, form = analysis.system, analysis.form
+    if not system.constraints:
+        names = tuple(u.name for u in form.speeds) if system.speeds else system.coordinates
+        return Constraints.none(analysis.ring, names, in_speeds=bool(system.speeds))
+    from mbsym.problems.constraints.analysis import constraints, constraints_in_speeds
 
-    if not analysis.system.speeds:
+    if not system.speeds:
         return constraints(analysis.scene)
-    from mbsym.problems.constraints.analysis import constraints_in_speeds
-
-    tied = analysis.tied_in_coordinates
-    return constraints_in_speeds(analysis.form, analysis.scene, tied, analysis.tied_programs)
+    return constraints_in_speeds(form, analysis.scene, analysis.tied_in_coordinates, analysis.tied_programs)
 
 
 def constraints_in_coordinates(analysis: Analysis) -> Constraints:
@@ -148,15 +149,15 @@ def equations_of(analysis: Analysis) -> Equations:
     With constraints these are the equations of the open tree, and beside them those without multipliers if they are not
     too long.
     """
-    tied = analysis.constraints if analysis.system.constraints else None
+    tied = analysis.constraints
     if analysis.system.speeds:
         from mbsym.problems import in_speeds
 
-        rows = [] if tied is None else [*tied.velocity, *(f for f in tied.position if f is not None)]
+        rows = [*tied.velocity, *(f for f in tied.position if f is not None)]
         tree: Equations = in_speeds.equations(analysis.form, analysis.scene, [x.polynomial for x in rows])
     else:
         tree = equations.equations(analysis.scene, analysis.energy)
-    if tied is None:
+    if not tied.names:
         return tree
     from mbsym.problems.constraints.motion import embedded_equations
 
@@ -169,8 +170,10 @@ def equations_of(analysis: Analysis) -> Equations:
 
 def programs_of(analysis: Analysis) -> ConstrainedPrograms:
     """M, f and the rows as straight-line code, in coordinates."""
-    from mbsym.mechanics.constraints.programs import constrained_programs
+    from mbsym.mechanics.constraints.programs import ConstrainedPrograms, constrained_programs
 
+    if not analysis.system.constraints:
+        return ConstrainedPrograms(analysis.programs, (), (), (), (), ())
     tied = analysis.tied_in_coordinates if analysis.system.speeds else analysis.constraints
     components = [(name.constraint, name.component) for name in tied.names]
     return constrained_programs(analysis.system.without_speeds, analysis.ring, components)
@@ -178,8 +181,8 @@ def programs_of(analysis: Analysis) -> ConstrainedPrograms:
 
 def rows_check(analysis: Analysis) -> Check | None:
     """The rows against places in inertial axes."""
-    constraints = analysis.optional("constraints") if analysis.system.constraints else None
-    if constraints is None:
+    constraints = analysis.optional("constraints")
+    if constraints is None or not constraints.names:
         return None
     from mbsym.problems.constraints.checks import check_rows
 
@@ -189,7 +192,7 @@ def rows_check(analysis: Analysis) -> Check | None:
 def motion_check(analysis: Analysis) -> Check | None:
     """The embedded equations against d'Alembert's principle on the constraint manifold."""
     closed = analysis.optional("equations") if analysis.system.constraints else None
-    if closed is None or closed.constraints is None or closed.embedded is None:
+    if closed is None or closed.embedded is None:
         return None
     from mbsym.problems.constraints.checks import check_embedded
 
@@ -200,7 +203,7 @@ def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
     """What the motion keeps, with constraints or in speeds."""
     from mbsym.problems.constraints.integrals import integrals
 
-    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, _tied(analysis)[1])
+    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, analysis.tied_programs)
 
 
 def integrals_check(analysis: Analysis, integrals: Sequence[Integral], truth: Oracles | None = None) -> Check:
@@ -212,18 +215,13 @@ def integrals_check(analysis: Analysis, integrals: Sequence[Integral], truth: Or
     return check_integrals(analysis.form, integrals, analysis.constraints, analysis.tied_programs)
 
 
-def _tied(analysis: Analysis) -> tuple[Constraints, ConstrainedPrograms] | tuple[None, None]:
-    """The constraints and their program, where there are some."""
-    return (analysis.constraints, analysis.tied_programs) if analysis.system.constraints else (None, None)
-
-
 def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:
     """Forces and moments in the joints that the description names; none where it names none."""
     if not analysis.system.reactions:
         return ()
     from mbsym.problems.reactions import reactions
 
-    return reactions(analysis.scene, *_tied(analysis))
+    return reactions(analysis.scene, analysis.constraints, analysis.tied_programs)
 
 
 def reactions_check(analysis: Analysis) -> Check | None:
@@ -233,4 +231,4 @@ def reactions_check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.reactions import check_reactions
 
-    return check_reactions(analysis.oracles, reactions, *_tied(analysis))
+    return check_reactions(analysis.oracles, reactions, analysis.constraints, analysis.tied_programs)

@@ -188,7 +188,8 @@ def equilibrium_of(analysis: Analysis) -> Equilibrium:
         return given.at_zero()
     residuals = [x.polynomial for x in analysis.residuals]
     on_motion = bool(analysis.system.constraints)
-    singular = () if on_motion else equilibrium.singular_displacements(analysis.expanded, lambda: analysis.expanded)
+    there = analysis.reduced.expansion.scene
+    singular = () if on_motion else equilibrium.singular_displacements(there, lambda: analysis.expanded)
     residuals += approximation.beside(analysis, singular)
     return equilibrium.equilibrium(analysis.parameters_scene, residuals, analysis.signs, on_motion, singular)
 
@@ -270,13 +271,12 @@ def _in_other_velocities(analysis: Analysis, embedded: Embedded) -> str:
 
 def state_space_of(analysis: Analysis) -> StateSpace:
     """A, B, C, D."""
-    from mbsym.problems.state_space import reduced_state_space, state_space  # few systems have inputs
+    from mbsym.problems import state_space  # few systems have inputs
 
-    if analysis.system.constraints:
-        _ = analysis.linearisation  # the motion exists, and is steady
-        return reduced_state_space(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
-    expanded = None if analysis.system.linear is not None else analysis.expanded
-    return state_space(analysis.parameters_scene, expanded, analysis.linearisation, analysis.equilibrium)
+    linear = analysis.linearisation  # the motion exists
+    if analysis.system.linear is not None:
+        return state_space.of_matrices(analysis.parameters_scene, linear)
+    return state_space.state_space(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
 
 
 def first_order_of(analysis: Analysis) -> FirstOrder:
@@ -287,8 +287,7 @@ def first_order_of(analysis: Analysis) -> FirstOrder:
         why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
         raise Unavailable("first order", why)
     equations = cast("SpeedEquations", analysis.equations)
-    reduced = analysis.reduced if analysis.system.constraints else None
-    return first_order.first_order(analysis.form, equations, analysis.equilibrium, reduced)
+    return first_order.first_order(analysis.form, equations, analysis.equilibrium, analysis.reduced)
 
 
 def told_of(analysis: Analysis) -> ToldSystem:

@@ -26,7 +26,7 @@ from mbsym.algebra.kernel import kernel
 from mbsym.algebra.matrices import added, determinant, faddeev
 from mbsym.analysis.higher import momenta_at_rest
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.motion import relations, turning, unperturbed_with
+from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest
@@ -226,8 +226,6 @@ def by_one_coordinate(
 
 def at_rest(analysis: Analysis) -> bool:
     """Whether nothing moves on the unperturbed motion."""
-    if not analysis.system.constraints:
-        return not turning(analysis.scene)
     base = analysis.reduced.expansion.base
     return not base.turning and all(x.is_zero() for x in base.rates)
 
@@ -371,19 +369,16 @@ def _at_values(
 
 def _rests(analysis: Analysis, values: Mapping[str, Any]) -> _Rests | None:
     """The manifold of rests; None where it is not shown that there is one."""
-    if analysis.system.constraints:
-        about = analysis.reduced.about
-        if analysis.constraints.position_rank or about.following:
-            return None
-        if {*about.dependent_speeds} != {*analysis.constraints.dependent}:  # others need not be regular here
-            there = replace(analysis.system, dependent=about.dependent_speeds)
-            analysis = type(analysis)(there, (), analysis.terms, suggests=False)
+    about = analysis.reduced.about
+    if analysis.constraints.position_rank or about.following:
+        return None
+    if {*about.dependent_speeds} != {*analysis.constraints.dependent}:  # others need not be regular here
+        there = replace(analysis.system, dependent=about.dependent_speeds)
+        analysis = type(analysis)(there, (), analysis.terms, suggests=False)
     ring, system, equations = analysis.ring, analysis.system, analysis.equations
-    forces = equations.forcing
-    if system.constraints:
-        if equations.embedded is None:
-            return None
-        forces = (*equations.embedded.forcing, *analysis.constraints.velocity)
+    if equations.embedded is None:
+        return None
+    forces = (*equations.embedded.forcing, *equations.constraints.velocity)
     numbers, place = _at_values(analysis, values)
     found = _Rests(ring, system.coordinates, numbers, place)
     parts = [found.vanishing_part(found.numerator(ring.at_rest(force.polynomial))) for force in forces]

@@ -10,7 +10,6 @@ from mbsym.mechanics.kinematics import over_ring
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.model.system import System
     from mbsym.problems.canonical import Brackets, Hamilton, Independent, Routh
     from mbsym.problems.checks import Check
@@ -29,8 +28,9 @@ def independent(analysis: Analysis) -> Independent:
     """The system in the velocities, or speeds, that constraints leave."""
     from mbsym.problems.canonical import Independent
 
-    general = analysis.system.constraints or analysis.system.speeds
-    return Independent(analysis.form, analysis.scene, analysis.energy, analysis.equations if general else None)
+    tied = analysis.constraints
+    equations = analysis.equations if tied.names or tied.in_speeds else None  # else T and U are enough
+    return Independent(analysis.form, analysis.scene, analysis.energy, tied, equations)
 
 
 def hamilton(analysis: Analysis) -> Hamilton:
@@ -82,17 +82,13 @@ def wanted_checks(analysis: Analysis) -> Iterator[str]:
 # --- second routes: None where there is nothing to compare ---
 
 
-def _programs(analysis: Analysis) -> ConstrainedPrograms | None:
-    return analysis.tied_programs if analysis.system.constraints else None
-
-
 def _hamilton(analysis: Analysis) -> Check | None:
     equations = analysis.optional("hamilton")
     if equations is None:
         return None
     from mbsym.problems.canonical import check_hamilton
 
-    return check_hamilton(analysis.oracles, independent(analysis), equations, _programs(analysis))
+    return check_hamilton(analysis.oracles, independent(analysis), equations, analysis.tied_programs)
 
 
 def _routh(analysis: Analysis) -> Check | None:
@@ -101,7 +97,7 @@ def _routh(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.canonical import check_routh
 
-    return check_routh(analysis.oracles, independent(analysis), equations, _programs(analysis))
+    return check_routh(analysis.oracles, independent(analysis), equations, analysis.tied_programs)
 
 
 def _brackets(analysis: Analysis) -> Check | None:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.mechanics.constraints.expansion import OnManifold
+    from mbsym.mechanics.expansion import OnManifold
     from mbsym.problems.dissipation import Balance
     from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms
 
@@ -312,8 +312,6 @@ def _sign_at(ring: Ring, values: Mapping[str, Any]) -> Callable[[Polynomial], st
 
 def on_a_leaf(analysis: Analysis) -> bool:
     """Whether velocity constraints keep relations that a disturbance may change."""
-    if not analysis.system.constraints:
-        return False
     about = analysis.reduced.about
     return about.leaf > 0 or not about.holonomic
 
@@ -324,7 +322,7 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     Raises NotExpanded where the motion is none, where constraints know the time or are not known to be integrable, or
     where their rank on the motion is not that near it.
     """
-    from mbsym.mechanics.constraints.expansion import on_manifold
+    from mbsym.mechanics.expansion import on_manifold
     from mbsym.problems.normal_forms.expansion import NotExpanded
 
     system, scene, tied = analysis.system, analysis.parameters_scene, analysis.constraints

@@ -51,7 +51,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
         values = tuple((signal.name, text(signal.held)) for signal in analysis.system.inputs)
         still = type(analysis)(held(analysis.system), analysis.problems, analysis.terms, analysis.suggests)
         return replace(invariant_sets_of(still), inputs=values)
-    count = len(analysis.constraints.free if analysis.system.constraints else analysis.system.coordinates)
+    count = len(analysis.constraints.free)
     if not analysis.system.speeds and count > MOST_ANGLES:
         raise NoClosedForm(
             "[[count]] coordinates: without speeds of their own, families of integrals of at most "

@@ -341,7 +341,7 @@ class Judge:
             further = _unconditional(self._in_others) if values is None else self._in_others(values)
             drift = others.balance.ignorable if Flaw.CYCLIC in further.flawed else ()
             every = of.system.coordinates if Flaw.HERE in further.flawed else drift
-            rows = of.constraints.jacobian.polynomials if of.system.constraints else []
+            rows = of.constraints.jacobian.polynomials
         except (Failure, *NOT_THERE):
             return verdict
         uneven = any(of.ring.dependencies(x, every) for row in rows for x in row)

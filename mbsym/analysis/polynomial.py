@@ -127,7 +127,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     follows = None
     if len(known) < len(listed):
         follows = cache(partial(_following, analysis, dict(values or {}), transfer.images))
-    tied = equations.constraints is not None and equations.constraints.position_rank > 0 and bool(whole.relations)
+    tied = equations.constraints.position_rank > 0 and bool(whole.relations)
     there = Setting(whole, field, transfer, kinds, tuple(groups), tuple(known), aside, inside, rational, tied)
     return there if follows is None else replace(there, follows=lambda formula: follows()(formula))
 

@@ -570,8 +570,7 @@ def _rows(analysis: Analysis) -> Iterator[list[Formula]]:
     ]
     for row, force in zip(equations.mass_matrix, equations.forcing, strict=True):
         yield [*(x * rate for x, rate in zip(row, rates, strict=True)), force]
-    if equations.constraints is not None:
-        yield from ([x] for x in equations.constraints.velocity)
+    yield from ([x] for x in equations.constraints.velocity)
     if equations.in_speeds:
         own = cast("SpeedEquations", equations)
         yield from ([_rate(ring, name), x] for name, x in zip(own.positions, own.rates, strict=True))

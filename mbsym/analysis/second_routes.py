@@ -16,6 +16,7 @@ from mbsym.problems import equilibrium, knowledge, linearisation, perturbation
 from mbsym.problems.checks import Check
 from mbsym.problems.equations import Equations
 from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.reduction_check import check_motion, check_perturbed_motion
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -110,17 +111,13 @@ def _equilibrium(analysis: Analysis) -> Check | None:
     steady_state, closed = analysis.optional("equilibrium"), _closed(analysis)
     if steady_state is None or analysis.system.linear is not None:
         return None
-    if analysis.system.constraints:
-        from mbsym.problems.reduction_check import check_reduced_motion
-
-        about = analysis.reduced.about
-        return check_reduced_motion(analysis.system, analysis.ring, steady_state.residuals, about, dependent(analysis))
     if steady_state.singular:  # what is demanded besides is differentiated a second time
         closed = analysis.optional("equations")
-    if closed is not None:
+    if closed is not None and not closed.constraints.names:
         return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), steady_state.residuals)
-    of_each = steady_state.residuals[: len(analysis.system.coordinates)]
-    return perturbation.check_motion(analysis.system, analysis.ring, of_each, dependent(analysis))
+    reduced = analysis.reduced
+    on_motion = steady_state.residuals[: len(reduced.residuals)]
+    return check_motion(analysis.system, analysis.ring, on_motion, reduced.about, dependent(analysis))
 
 
 def _linearisation(analysis: Analysis) -> Check | None:
@@ -129,7 +126,7 @@ def _linearisation(analysis: Analysis) -> Check | None:
 
         return given.check(analysis)
     linear, closed = analysis.optional("linearisation"), _closed(analysis)
-    if linear is None or closed is None or linear.constrained is not None:
+    if linear is None or closed is None or linear.about.ties:
         return None
     return comparison.check_linearisation(analysis.ring, linear, linearised(analysis, closed))
 
@@ -138,13 +135,11 @@ def _perturbed(analysis: Analysis) -> Check | None:
     linear = analysis.optional("linearisation")
     if linear is None or analysis.system.linear is not None:
         return None
-    if linear.constrained is not None:
-        from mbsym.problems.reduction_check import check_reduced_perturbation
-
+    existing = None
+    if linear.about.ties:
         # a motion that breaks the constraints' rows has no first approximation: the routes leave the rows differently
         existing = equilibrium.on_a_branch(analysis.parameters_scene, analysis.equilibrium)
-        return check_reduced_perturbation(analysis.system, analysis.ring, linear, dependent(analysis, existing))
-    return perturbation.check_perturbed_motion(analysis.system, analysis.ring, linear, dependent(analysis))
+    return check_perturbed_motion(analysis.system, analysis.ring, linear, dependent(analysis, existing))
 
 
 def _first_order(analysis: Analysis) -> Check | None:
@@ -159,8 +154,7 @@ def _first_order(analysis: Analysis) -> Check | None:
 
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)
-    reduced = analysis.reduced if analysis.system.constraints else None
-    return first_order.check(analysis.form, closed, first_order_form, linear, analysis.equilibrium, reduced)
+    return first_order.check(analysis.form, closed, first_order_form, analysis.equilibrium, analysis.reduced)
 
 
 def _integrals(analysis: Analysis) -> Check | None:

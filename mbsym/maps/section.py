@@ -197,7 +197,7 @@ def _section(
         raise Unfit(list(dict.fromkeys(complaints)))
     used = frozenset(images.used)
     _motion_exists(motion, images)
-    for assumed in () if linear.constrained is None else linear.constrained.assumed:
+    for assumed in linear.about.assumed:
         undefined += [x for x in _carried(images, assumed.polynomial) if not x.is_constant()]
     return Section(
         tuple(axes),

@@ -168,10 +168,9 @@ def energy_standing(
     """
     rate = dynamics.energy_rate
     if dynamics.in_states:
-        unmoved = dynamics.constraints is None or dynamics.constraints.steady
-        proved = unmoved and (not rate.terms or _vanishes(dynamics, rate))
+        proved = dynamics.is_scleronomic and (not rate.terms or _vanishes(dynamics, rate))
         return (Standing.PROVED, None) if proved else standing(dynamics, dynamics.relative_energy, 0, points, (), near)
-    if dynamics.constraints is not None and not dynamics.constraints.steady:
+    if not dynamics.is_scleronomic:
         return on_constraints(dynamics, [*dynamics.energy_power.outputs, *dynamics.constraint_power.outputs], points)
     if not rate.terms or not dynamics.energy_power.outputs or _vanishes(dynamics, rate):
         return Standing.PROVED, None

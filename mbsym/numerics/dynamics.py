@@ -117,6 +117,15 @@ class Dynamics:
         )
 
     @property
+    def is_scleronomic(self) -> bool:
+        """Whether no constraint moves by itself: what rests keeps them at all times if it does at one."""
+        return self.constraints is None or self.constraints.steady
+
+    def tangent(self, t: float, state: Any) -> Any:
+        """An orthonormal basis, in columns, of the changes of a state that constraints allow to first order."""
+        return np.eye(len(state)) if self.constraints is None else self.constraints.tangent(t, state)
+
+    @property
     def measured(self) -> Constraints | None:
         """The constraints from which states of a run may stray: those that it is led to, if it is led."""
         return self.constraints

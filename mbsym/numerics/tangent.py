@@ -134,8 +134,8 @@ def along_motion(dynamics: Dynamics) -> tuple[Fraction, ...]:
 
 def _allowed(dynamics: Dynamics, base: Any) -> Any:
     """A basis of the changes of x0 that keep constraints, norms and right angles to first order, in columns."""
-    constraints, place = dynamics.constraints, {name: k for k, name in enumerate(dynamics.inputs[1:])}
-    basis = np.eye(len(base)) if constraints is None else constraints.tangent(0.0, base)
+    place = {name: k for k, name in enumerate(dynamics.inputs[1:])}
+    basis = dynamics.tangent(0.0, base)
     rows = []
     for vectors in orthonormal(dynamics.system) if dynamics.in_states else ():
         at = [[place[name] for name in components] for components in vectors]

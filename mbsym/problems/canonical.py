@@ -135,29 +135,25 @@ class Independent:
     form: SpeedForm
     scene: Scene
     energy: Energy
+    tied: Constraints
     equations: Equations | None
 
-    @property
-    def tied(self) -> Constraints | None:
-        return None if self.equations is None else self.equations.constraints
-
     @cached_property
-    def solved(self) -> Solved | None:
+    def solved(self) -> Solved:
         """Raises NoClosedForm where the dependent velocities have none."""
-        if self.tied is not None and self.tied.solved is None:
+        if self.tied.solved is None:
             raise NoClosedForm("the dependent velocities have no closed form within the budget of terms")
-        return None if self.tied is None else self.tied.solved
+        return self.tied.solved
 
     @cached_property
     def speeds(self) -> tuple[Variable, ...]:
-        free = None if self.solved is None else self.solved.embedding.free
-        return self.form.speeds if free is None else tuple(self.form.speeds[k] for k in free)
+        return tuple(self.form.speeds[k] for k in self.solved.embedding.free)
 
     @cached_property
     def _images(self) -> dict[int, Polynomial]:
         from mbsym.problems.constraints.motion import dependent_velocities
 
-        return {} if self.solved is None else dependent_velocities(self.form, self.solved)
+        return dependent_velocities(self.form, self.solved)
 
     def on(self, x: Polynomial) -> Polynomial:
         """With the dependent velocities expressed by the independent ones."""
@@ -184,7 +180,7 @@ class Independent:
     @property
     def integrable(self) -> bool | None:
         """Whether what ties velocities follows from relations between positions; None where that is undecided."""
-        how = None if self.tied is None else self.tied.integrability
+        how = self.tied.integrability
         if how is None:
             return True
         return None if how.kept is None or how.certainty is not Certainty.PROVED else how.word == "holonomic"
@@ -192,7 +188,7 @@ class Independent:
     def rates(self) -> list[Polynomial]:
         """d(dT/du)/dt = f + its rate at u' = 0, of M u' = f."""
         assert self.equations is not None
-        own = self.equations.embedded if self.tied is not None else self.equations
+        own = self.equations.embedded
         if own is None:
             raise NoClosedForm("the equations without multipliers have no closed form within the budget")
         drifts = [self.on(self.form.drift(p)) for p in self.momenta]
@@ -205,7 +201,7 @@ class Independent:
         """
         form, ring, names = self.form, self.form.ring, self.form.system.coordinates
         n = len(names)
-        if self.tied is not None or len(self.speeds) != n or n > MOST:
+        if len(self.speeds) != n or n > MOST:
             return None
         rows = [[ring.velocity_derivative(x, name) for name in names] for x in form.in_coordinates]
         fields = solved(ring, rows, [[ring.one if i == k else ring.zero for k in range(n)] for i in range(n)])
@@ -506,9 +502,7 @@ def rate_along(canonical: Hamilton, scene: Scene, f: Polynomial) -> Polynomial:
 CANONICAL, ROUTH, BRACKETS = "canonical equations", "Routh's equations", "Poisson brackets"
 
 
-def check_hamilton(
-    truth: Oracles, own: Independent, canonical: Hamilton, programs: ConstrainedPrograms | None = None
-) -> Check:
+def check_hamilton(truth: Oracles, own: Independent, canonical: Hamilton, programs: ConstrainedPrograms) -> Check:
     """p, H, q' and p' against sums over bodies in inertial axes; with constraints by ``programs`` on their manifold."""
     system, ring = own.form.system, canonical.hamiltonian.ring
     names = system.coordinates
@@ -547,7 +541,7 @@ def check_hamilton(
         return compared
 
     routes = ("Hamilton, closed form", D_ALEMBERT)
-    if programs is None or own.tied is None:
+    if not own.tied.names:
 
         def free(oracle: Oracle) -> list[Pair]:
             one, zero = oracle.numbers.one, oracle.numbers.zero
@@ -582,7 +576,7 @@ def _on_the_manifold(
     return compared_on_manifold(name, routes, own.form, programs, at)
 
 
-def check_routh(truth: Oracles, own: Independent, found: Routh, programs: ConstrainedPrograms | None = None) -> Check:
+def check_routh(truth: Oracles, own: Independent, found: Routh, programs: ConstrainedPrograms) -> Check:
     """R, c' and M_R s'' = f_R against sums over bodies in inertial axes, on the level of the momenta.
 
     With constraints on their manifold, at the accelerations with multipliers, which M_R s'' = f_R has to have.
@@ -607,7 +601,7 @@ def check_routh(truth: Oracles, own: Independent, found: Routh, programs: Constr
         compared.append(("R", carry(found.function.polynomial), function))
         compared.append((Message("the parts of R"), _by_parts(found, carry, state), function))
         zero = state.numbers.zero
-        needed = _on_the_level(oracle, found) if own.tied is None else dict.fromkeys(found.coordinates, zero)
+        needed = _on_the_level(oracle, found) if not own.tied.names else dict.fromkeys(found.coordinates, zero)
         for i, name in enumerate(found.coordinates):
             if name in chosen.chosen:
                 total = -carry(found.forcing[i].polynomial)
@@ -618,7 +612,7 @@ def check_routh(truth: Oracles, own: Independent, found: Routh, programs: Constr
         return compared
 
     routes = ("Routh, closed form", D_ALEMBERT)
-    if own.tied is None or programs is None:
+    if not own.tied.names:
         return compare(truth, ROUTH, routes, pairs, chosen.states, chosen.remark)
     return _on_the_manifold(ROUTH, routes, own, own.tied, programs, lambda oracle, _: pairs(oracle))
 

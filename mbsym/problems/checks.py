@@ -3,7 +3,7 @@
 * The closed equations (Lagrange, in the ring) and the straight-line program (Newton-Euler, in body axes) are each
   compared with d'Alembert's principle in inertial axes (``mbsym.mechanics.oracle``) at rational states.
 * Problem 1's rotations and velocities are compared with the same placement of the bodies.
-* Linearised equations are compared with the quadratised Lagrangian, as polynomials.
+* Differentiated equations are compared with those expanded while they are built, as polynomials.
 
 ``exact`` means equality of rational numbers (or polynomials) without tolerance; ``verified numerically`` means
 overlapping balls of at least 200 bits, where roots or exponentials make exact numbers impossible.

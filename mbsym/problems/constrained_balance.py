@@ -23,7 +23,7 @@ from mbsym.mechanics.constraints.rows import Row, RowName, said_rows
 from mbsym.mechanics.motion import turning
 from mbsym.problems.displacements import Direction, Displacements, among
 from mbsym.problems.dissipation import Balance, EnergyLaw
-from mbsym.problems.reduction import Reduction
+from mbsym.problems.linearisation import Reduction
 
 #: A row is looked for among others in a table of no more entries than this.
 MOST_ENTRIES = 4_000_000

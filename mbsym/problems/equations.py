@@ -32,7 +32,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from mbsym.algebra.matrices import united
 from mbsym.algebra.ring import Polynomial, Ring
@@ -40,26 +39,40 @@ from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.variables import rate_of
+from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
 
-if TYPE_CHECKING:
-    from mbsym.problems.constraints.motion import Embedded
-    from mbsym.problems.constraints.result import Constraints
+
+@dataclass(frozen=True, repr=False)
+class Embedded(Shown):
+    """Y^T M Y (symmetric) and Y^T (f - M a0) in the independent velocities, which are those of ``free``.
+
+    Without constraints M and f.
+    """
+
+    free: tuple[str, ...]
+    mass_matrix: Matrix
+    forcing: Column
+
+    @property
+    def terms(self) -> int:
+        """Terms of both."""
+        return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
 
 
 @dataclass(frozen=True, repr=False)
 class Equations(Shown):
     """M (n x n), f (n) and the part Q (n) of f that comes from loads without a force function.
 
-    With ``constraints`` M q'' = f + J^T lambda; ``embedded`` are the equations without multipliers, None where these
-    outgrow the budget.
+    With ``constraints`` M q'' = f + J^T lambda; ``embedded`` are the equations without multipliers, which are the same
+    where there are no constraints; None where they outgrow the budget.
     """
 
     mass_matrix: Matrix
     forcing: Column
     generalized_force: Column
-    constraints: Constraints | None = field(default=None, kw_only=True)
-    embedded: Embedded | None = field(default=None, kw_only=True)
+    constraints: Constraints = field(kw_only=True)
+    embedded: Embedded | None = field(kw_only=True)
 
     @property
     def in_speeds(self) -> bool:
@@ -89,7 +102,7 @@ class Equations(Shown):
 
 
 def equations(scene: Scene, energy: Energy) -> Equations:
-    """Lagrange's equations as M q'' = f (scene over the ring)."""
+    """Lagrange's equations of the open tree as M q'' = f (scene over the ring)."""
     ring, names = scene.ring, scene.system.coordinates
     lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
     applied = generalized_forces(scene)
@@ -98,10 +111,13 @@ def equations(scene: Scene, energy: Energy) -> Equations:
         momentum = ring.velocity_derivative(energy.kinetic_energy.polynomial, name)
         slope = ring.derivative(lagrangian, name)
         forcing.append(ring.reduce(slope + applied[name] - convective_rate(scene, ring, momentum)))
+    right = column(ring, forcing)
     return Equations(
         mass_matrix=energy.A2,
-        forcing=column(ring, forcing),
+        forcing=right,
         generalized_force=column(ring, [applied[name] for name in names]),
+        constraints=Constraints.none(ring, names),
+        embedded=Embedded(names, energy.A2, right),
     )
 
 

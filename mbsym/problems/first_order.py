@@ -15,7 +15,7 @@ motion; so those of a quaternion, e_0 . delta e = 0.  Where the motion is not st
 such A.
 
 Second route: with T = d(s, u)/d(q, eta) on the motion and A_q that of the generalised coordinates,  A T = T' + T A_q,
-eta the generalised velocities, or those that constraints leave (``mechanics.constraints.expansion``);
+eta the generalised velocities, or those that constraints leave (``mechanics.expansion``);
 the rows of a quaternion there are  de/dq_i = 1/2 e o w_i,  w_i the axis about which q_i turns, in those of the body.
 """
 
@@ -24,7 +24,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
-from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, solved
@@ -33,19 +32,16 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import divide, number, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, Shown, column
-from mbsym.mechanics.constraints.expansion import reached
+from mbsym.mechanics.expansion import reached
 from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene, over_ring
-from mbsym.mechanics.motion import motion_values, turning, unperturbed_with, unsteady
+from mbsym.mechanics.motion import motion_values, unperturbed_with, unsteady
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.model.system import velocity_name
 from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.equilibrium import Equilibrium, unsolved
 from mbsym.problems.in_speeds import SpeedEquations
-from mbsym.problems.linearisation import Linearisation
-
-if TYPE_CHECKING:
-    from mbsym.problems.reduction import Reduced
+from mbsym.problems.reduction import Reduced
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,10 +63,8 @@ class FirstOrder(Shown):
         return self.A.terms
 
 
-def first_order(
-    form: SpeedForm, equations: SpeedEquations, at: Equilibrium, reduced: Reduced | None = None
-) -> FirstOrder:
-    """A in closed form; beside constraints with what the coordinates are ``reduced`` to.
+def first_order(form: SpeedForm, equations: SpeedEquations, at: Equilibrium, reduced: Reduced) -> FirstOrder:
+    """A in closed form, with what the coordinates are ``reduced`` to.
 
     Raises NoClosedForm where the motion does not exist, is not steady in these variables, or positions are constrained.
     """
@@ -84,7 +78,7 @@ def first_order(
     rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}
     plain, motion = _motion(form, at, reduced)
     turned = _quaternions(form, plain, reduced)
-    for positions in _positions(form, equations, forcing, rates, reduced):
+    for positions in _positions(form, equations, forcing, rates):
         variables = [*positions, *speeds]
         values = {
             x.index: turned[x.name] if x.name in turned else ring.substitute(_inner(form, x), motion) for x in variables
@@ -113,12 +107,10 @@ def first_order(
 
 
 def _independent(
-    form: SpeedForm, equations: SpeedEquations, reduced: Reduced | None
+    form: SpeedForm, equations: SpeedEquations, reduced: Reduced
 ) -> tuple[Matrix, Column, list[Variable], dict[int, Polynomial]]:
     """M, f and u of the independent speeds, and what the others are."""
     tied, embedded = equations.constraints, equations.embedded
-    if tied is None or reduced is None:
-        return equations.mass_matrix, equations.forcing, list(form.speeds), {}
     if tied.position_rank or reduced.about.leaf:
         raise NoClosedForm("constraints tie positions: their deviations are not free")
     if tied.solved is None or embedded is None:
@@ -133,16 +125,15 @@ def check(
     form: SpeedForm,
     equations: SpeedEquations,
     approximation: FirstOrder,
-    linear: Linearisation,
     at: Equilibrium,
-    reduced: Reduced | None = None,
+    reduced: Reduced,
 ) -> Check:
-    """A T = T' + T A_q, with A_q from the matrices of the generalised coordinates and T' along the motion."""
+    """A T = T' + T A_q, with A_q of the generalised coordinates and T' along the motion."""
     ring, names = form.ring, form.system.coordinates
     plain, motion = _motion(form, at, reduced)
     by_name = {x.name: x for x in (*form.positions, *form.speeds)}
     turned = _quaternion_slopes(form, plain, motion, reduced)
-    moving, below, independent = _flow(form, linear, motion, reduced)
+    moving, below, independent = _flow(form, motion, reduced)
     rates = [motion[ring.index("velocity", name)] for name in names]
 
     def along(y: Polynomial) -> Polynomial:
@@ -174,7 +165,7 @@ def check(
         for by, a, b, z in zip(states, left_row, right_row, row, strict=True)
     }
     routes = ("Kane's equations differentiated", "matrices of the generalised coordinates")
-    if reduced is not None:
+    if reduced.about.ties:
         routes = ("equations of the independent speeds differentiated", "constraints expanded in coordinates")
     return check_identities(ring, "first approximation in speeds", routes, differences, unsolved(plain, at))
 
@@ -182,21 +173,9 @@ def check(
 Rows = list[list[Polynomial]]
 
 
-def _flow(
-    form: SpeedForm, linear: Linearisation, motion: Mapping[int, Polynomial], reduced: Reduced | None
-) -> tuple[Rows, Rows, Sequence[int]]:
+def _flow(form: SpeedForm, motion: Mapping[int, Polynomial], reduced: Reduced) -> tuple[Rows, Rows, Sequence[int]]:
     """delta q' and eta' by (delta q, eta), and the places of eta among the velocities."""
     ring, n = form.ring, len(form.system.coordinates)
-    if reduced is None:
-        mass, damping, gyroscopic, stiffness, circulatory = (matrix.polynomials for matrix in linear.matrices)
-        right = [
-            [*(-k - c for k, c in zip(*place, strict=True)), *(-d - g for d, g in zip(*rate, strict=True))]
-            for place, rate in zip(
-                zip(stiffness, circulatory, strict=True), zip(damping, gyroscopic, strict=True), strict=True
-            )
-        ]
-        moving = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
-        return moving, solved(ring, mass, right), range(n)
     expansion, parts = reduced.expansion, reduced.equations
     columns = [*range(n), *(n + k for k in expansion.speeds)]
     moving = [
@@ -213,7 +192,6 @@ def _positions(
     equations: SpeedEquations,
     formulas: Sequence[Polynomial],
     rates: Mapping[str, Polynomial],
-    reduced: Reduced | None,
 ) -> Iterator[list[Variable]]:
     """The positions of x, in the ways that may be steady.
 
@@ -221,7 +199,7 @@ def _positions(
     whose rates depend on themselves, too, directly or through others (the angle of a light trailer): they have roots of
     their own although no equation of the speeds needs them.
     """
-    if reduced is None:
+    if not equations.constraints.names:
         yield [x for x in form.positions if x.name not in equations.aside]
         return
     ring, names = form.ring, list(rates)
@@ -233,14 +211,12 @@ def _positions(
         yield [x for x in form.positions if x.name in reachable]
 
 
-def _motion(form: SpeedForm, at: Equilibrium, reduced: Reduced | None) -> tuple[Scene, dict[int, Polynomial]]:
+def _motion(form: SpeedForm, at: Equilibrium, reduced: Reduced) -> tuple[Scene, dict[int, Polynomial]]:
     """A scene of the coordinates, and the motion in them with the velocities that constraints demand."""
     system, ring = form.system.without_speeds, form.ring
     plain = over_ring(system, ring, bodies=False)
     images = at.determined(plain)
     motion = dict(unperturbed_with(plain, images))
-    if reduced is None:
-        return plain, motion
     base = reduced.expansion.base
     for name, value, rate in zip(system.coordinates, base.values, base.rates, strict=True):
         if name in base.turning:
@@ -264,11 +240,11 @@ def _not_steady(names: Iterable[str]) -> NoClosedForm:
     return NoClosedForm(what, names=", ".join(names))
 
 
-def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced | None) -> dict[str, Polynomial]:
+def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced) -> dict[str, Polynomial]:
     """The components of quaternions on the motion, by name.  Raises NoClosedForm where they turn there."""
     values = {name: value for name, (value, _) in motion_values(form.system).items()}
     quaternions: dict[str, Polynomial] = {}
-    turned = turning(plain) if reduced is None else reduced.expansion.base.turning
+    turned = reduced.expansion.base.turning
     for body in form.by_quaternion:
         used = {name for _, angle in body.rotation.turns() for name in names_in(angle)}
         varying = used & {*turned, *(item.name for item in form.system.prescribed), "t"}
@@ -284,7 +260,7 @@ def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced | None) -> dict
 
 
 def _quaternion_slopes(
-    form: SpeedForm, plain: Scene, motion: Mapping[int, Polynomial], reduced: Reduced | None
+    form: SpeedForm, plain: Scene, motion: Mapping[int, Polynomial], reduced: Reduced
 ) -> dict[str, list[Polynomial]]:
     """de/dq of every component on the motion, by name:  1/2 e o w_i."""
     ring, names = form.ring, form.system.coordinates

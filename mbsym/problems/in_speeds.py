@@ -27,8 +27,9 @@ from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.speeds import Quaternion
+from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
-from mbsym.problems.equations import Equations
+from mbsym.problems.equations import Embedded, Equations
 from mbsym.problems.integrals import ENERGY, Integral, momentum_title, whole_momenta
 
 
@@ -101,14 +102,17 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
         form.shortened(ring.reduce(b - ring.substitute(a, still))) for a, b in zip(needed, supplied, strict=True)
     ]
     mass = [[form.shortened(a.derivative(u.rate_index)) for u in form.speeds] for a in needed]
-    names = tuple(s.name for s in form.positions)
+    matrix, right = Matrix.of(ring, mass), column(ring, forcing)
+    own, names = tuple(u.name for u in form.speeds), tuple(s.name for s in form.positions)
     occurring = {s.name for s in form.occurring([*needed, *supplied, *rows])}
     oriented = [(body.name, e) for body in form.oriented for e in body.orientation if set(e.components) & occurring]
     return SpeedEquations(
-        mass_matrix=Matrix.of(ring, mass),
-        forcing=column(ring, forcing),
+        mass_matrix=matrix,
+        forcing=right,
         generalized_force=column(ring, others),
-        speeds=tuple(u.name for u in form.speeds),
+        constraints=Constraints.none(ring, own, in_speeds=True),
+        embedded=Embedded(own, matrix, right),
+        speeds=own,
         speed_rates=tuple(u.rate_name for u in form.speeds),
         positions=names,
         rates=column(ring, [form.rates[name] for name in names]),

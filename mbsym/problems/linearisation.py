@@ -5,15 +5,14 @@
 with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (circulatory); v are the deviations of the
 inputs from the values at which they are held, B = dQ/du (0 on the right where the system has no inputs).  Two routes:
 
-1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion q0(t), f0 = f - M q0'':
-   C = -df0/dq', S = -df0/dq, B = df0/du, of which D and G are the symmetric and the skew part of C, K and N those of S;
-2. the Lagrangian is expanded to second order while it is built (quadratisation; Banshchikov & Vetrov, Problem 5):
-   with L2 = x'.M x'/2 + x'.A x - x.P x/2 the equations are
+1. the residuals M q'' - f of the equations are expanded to first order while they are built, about q0(t), by a
+   recursion over truncated polynomials in the deviations, so that the nonlinear equations are never formed; constraints
+   are expanded beside them (``mbsym.problems.reduction``).  The acceleration of a prescribed motion, and that of q0(t),
+   enter through the bodies' accelerations: a lift gives K = m l (g + a) through it;
+2. the nonlinear equations M(q) q'' = f, where they are derived, are differentiated on the motion: C = -df0/dq',
+   S = -df0/dq, B = df0/du with f0 = f - M q0''.
 
-       M x'' + (dM/dt + A - A^T) x' + (dA/dt + P) x = (linear part of Q),
-
-   d/dt along the unperturbed motion, where prescribed quantities, steadily turning coordinates and t run: the
-   acceleration of a prescribed motion stands in dA/dt (a lift gives K = m l (g + a) through it).
+Of C the symmetric part is D and the skew part G, of S these are K and N.
 
 Subsystems are the connected components of the coordinates under all five matrices.  With a time scale w the time is
 tau = w t: M stays, D and G are divided by w, K and N by w^2.
@@ -32,35 +31,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from mbsym.algebra.elimination import Definition, combination
-from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
 from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
-from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.motion import (
-    motion_derivatives,
-    motion_values,
-    rate_on_motion,
     relations,
     steadied,
-    turning,
     unperturbed,
     unsteady,
 )
-from mbsym.mechanics.newton_euler import applied_forces
-from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
-
-if TYPE_CHECKING:
-    from mbsym.problems.reduction import Reduction
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,6 +85,48 @@ class Varying:
 
 
 @dataclass(frozen=True, repr=False)
+class Reduction(Shown):
+    """Which quantities the first approximation is about; without constraints all coordinates are independent.
+
+    ``coordinates`` and ``speeds`` are the independent ones, ``dependent_coordinates`` and ``dependent_speeds`` the
+    others; ``idle`` are independent coordinates that no equation of the speeds depends on, ``following`` those that are
+    felt although their velocities are dependent.  ``rates`` are velocities of the motion that follow from the
+    constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every constraint is one between
+    coordinates, as it is given.  ``family``: the derivatives of the coordinate, and of its velocity, by the parameters
+    that stand in the motion only, of every speed and then of all that follow: by these the description gives a family
+    of motions.  ``leaf``: how many relations between coordinates the velocity constraints keep, all of them proved to
+    be integrable, so that the first approximation is that on the leaf of the motion; 0 where they are not.
+    """
+
+    coordinates: tuple[str, ...]
+    speeds: tuple[str, ...]
+    dependent_coordinates: tuple[str, ...] = ()
+    dependent_speeds: tuple[str, ...] = ()
+    idle: tuple[str, ...] = ()
+    rates: tuple[tuple[str, Formula], ...] = ()
+    assumed: tuple[Formula, ...] = ()
+    holonomic: bool = True
+    family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...] = ()
+    following: tuple[str, ...] = ()
+    leaf: int = 0
+
+    @property
+    def about(self) -> tuple[str, ...]:
+        """The coordinates of the first approximation: those of the speeds, then those that follow."""
+        return (*self.speeds, *self.following)
+
+    @property
+    def ties(self) -> bool:
+        """Whether velocities depend on others, by constraints."""
+        return bool(self.dependent_speeds)
+
+    @property
+    def rates_by_name(self) -> dict[str, Polynomial]:
+        """``rates`` as a mapping."""
+        return {name: rate.polynomial for name, rate in self.rates}
+
+
+@dataclass(frozen=True, repr=False)
 class Linearisation(Shown):
     """Matrices n x n in physical time and declared parameters; ``subsystems`` as a paper prints them.
 
@@ -107,10 +135,10 @@ class Linearisation(Shown):
     about constant coefficients (Lagrange, Kelvin-Chetaev, eigenvalues) says anything about it.
 
     ``B`` (n x m, in physical time) belongs to the m ``inputs``; None where there are none.  Of a constrained system the
-    ``coordinates`` are the independent ones, and ``constrained`` says what became of the others.
+    ``coordinates`` are the independent ones; ``about`` says what became of the others.
     """
 
-    coordinates: tuple[str, ...]
+    about: Reduction
     M: Matrix
     D: Matrix
     G: Matrix
@@ -122,7 +150,11 @@ class Linearisation(Shown):
     varying: tuple[Varying, ...] = ()
     inputs: tuple[str, ...] = ()
     B: Matrix | None = None
-    constrained: Reduction | None = None
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Those of the rows and columns."""
+        return self.about.about
 
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
@@ -164,34 +196,8 @@ class Linearisation(Shown):
         )
 
 
-def by_quadratisation(scene: Scene, expanded: Scene[Jet], equilibrium: Equilibrium | None) -> Linearisation:
-    """Route 2, from the system over jets (``quadratised``): never forms the nonlinear equations.
-
-    Raises NoClosedForm or SingularPoint.
-    """
-    ring, n, inputs = scene.ring, len(scene.system.coordinates), expanded.system.input_names
-    L = kinetic_energy(expanded) + force_function(expanded)
-    Q = list(applied_forces(expanded).values())
-
-    def second(rows: int, columns: int) -> ScalarMatrix[Polynomial]:
-        return ScalarMatrix.by_entry(ring, n, n, lambda i, j: _second(ring, L, rows + i, columns + j))
-
-    def slopes(start: int, count: int) -> ScalarMatrix[Polynomial]:
-        return ScalarMatrix.by_entry(ring, n, count, lambda i, j: Q[i].degree(1).get((start + j,), ring.zero))
-
-    def rate(matrix: ScalarMatrix[Polynomial]) -> ScalarMatrix[Polynomial]:
-        return matrix.map(lambda x: rate_on_motion(scene, x))
-
-    x, v, u = 0, n, 2 * n  # where the deviations of coordinates, velocities and inputs begin
-    M, A, P = second(v, v), second(v, x), -second(x, x)
-    C = A - A.T + rate(M) - slopes(v, n)
-    S = P + rate(A) - slopes(x, n)
-    B = slopes(u, len(inputs))
-    return assemble(scene, equilibrium, (M, C, S, B), "quadratised Lagrangian", inputs)
-
-
 def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | None) -> Linearisation:
-    """Route 1: differentiates the nonlinear equations on the unperturbed motion.
+    """Route 2: differentiates the nonlinear equations on the unperturbed motion.
 
     Raises NoClosedForm or SingularPoint.
     """
@@ -219,54 +225,15 @@ def with_inertia(scene: Scene, equations: Equations) -> list[Polynomial]:
     ]
 
 
-def quadratised(scene: Scene, whole: System | None = None, order: int = 2) -> Scene[Jet]:
-    """The system over jets of ``order`` about the unperturbed motion; with ``whole`` its inputs deviate, too.
-
-    Deviations are numbered: x_i is i, x'_i is n + i, that of input k is 2 n + k.
-    """
-    ring, system = scene.ring, whole or scene.system
-    names, values = system.coordinates, motion_values(system)
-    spinning = set(turning(scene))
-    at_rest = {name: value for name, (value, _) in values.items() if name not in spinning}
-    lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()}
-    numbers = {name: i for i, name in enumerate(names)}
-    held = {system_input.name: scene.lower(system_input.held) for system_input in system.inputs}
-    numbers |= {system_input.name: 2 * len(names) + k for k, system_input in enumerate(system.inputs)}
-    jets = Jets(
-        ring,
-        at_rest | {system_input.name: system_input.held for system_input in system.inputs},
-        numbers,
-        lowered | held,
-        order,
-    )
-    environment = {name: Jet(value) for name, value in scene.environment.items()}
-    derivatives = motion_derivatives(system)
-    for i, name in enumerate(names):
-        speed, acceleration = (scene.lower(x) for x in derivatives[name])
-        base = scene.environment[name] if name in spinning else scene.lower(values[name][0])
-        environment[name] = jets.deviation(i, base)
-        environment[velocity_name(name)] = jets.deviation(len(names) + i, speed)
-        environment[acceleration_name(name)] = Jet(acceleration)
-    for name, value in held.items():
-        environment[name] = jets.deviation(numbers[name], value)
-    return Scene(system, jets, environment, ring)
-
-
-def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
-    """d^2/dx_i dx_j."""
-    value: Polynomial = x.second.get((min(i, j), max(i, j)), ring.zero)
-    return value * 2 if i == j else value
-
-
 def assemble(
     scene: Scene,
     equilibrium: Equilibrium | None,
     whole: tuple[ScalarMatrix[Polynomial], ...],
     route: str,
     inputs: tuple[str, ...],
-    coordinates: tuple[str, ...] | None = None,
+    about: Reduction | None = None,
 ) -> Linearisation:
-    """The matrices of  M x'' + C x' + S x = B u  made a result: ``whole`` is M, C, S, B, by ``coordinates``.
+    """The matrices of  M x'' + C x' + S x = B u  made a result: ``whole`` is M, C, S, B, by ``about.about``.
 
     Relations and conditions of existence are used, then C and S are split into symmetric and skew parts.
     """
@@ -277,7 +244,7 @@ def assemble(
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
     result = Linearisation(
-        coordinates=scene.system.coordinates if coordinates is None else coordinates,
+        about=about or Reduction(scene.system.coordinates, scene.system.coordinates),
         M=Matrix.of(ring, M.rows),
         D=Matrix.of(ring, symmetric(C).rows),
         G=Matrix.of(ring, skew(C).rows),

@@ -26,15 +26,14 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, Expression, add
-from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import in_step
-from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
+from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.speed_states import in_time
 from mbsym.mechanics.states import SEED, Oracles, drawn
 from mbsym.mechanics.variables import ring_environment, time_derivative
 from mbsym.model.system import System, acceleration_name, velocity_name
-from mbsym.problems.checks import D_ALEMBERT, Check, Pair, compare, decide
+from mbsym.problems.checks import Check, Pair, compare
 from mbsym.problems.integrals import Integral
 from mbsym.problems.linearisation import Linearisation
 
@@ -52,41 +51,6 @@ class Dependent:
 
     parameters: Mapping[str, Polynomial]
     notation: Mapping[str, Polynomial]
-
-
-def check_perturbed_motion(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
-    """Problem 5 against the disturbed derivation, at random parameter values."""
-    routes = ("matrices of the first approximation", Message("[[principle]], disturbed", principle=D_ALEMBERT))
-    exact = has_rational_states(system, ring, dependent)
-    return decide("perturbed motion", routes, exact, lambda balls: _pairs(system, ring, linear, dependent, balls))
-
-
-def check_motion(system: System, ring: Ring, residuals: Sequence[Formula], dependent: Dependent) -> Check:
-    """Problem 4 against the independent derivation on the motion, at random parameter values.
-
-    ``residuals`` are the forcing f_i there; d'Alembert's principle gives M q'' - f with q'' = 0.
-    """
-    routes = ("Newton-Euler recursion on the motion", D_ALEMBERT)
-    exact = has_rational_states(system, ring, dependent)
-
-    def pairs(balls: bool) -> list[Pair]:
-        state = unperturbed_state(system, ring, dependent, balls)
-        carry = Carrier(ring, state.numbers, state.values)
-        needed = Oracle(system, state).residuals
-        names = system.coordinates
-        return [
-            (Message("equation [[name]]", name=name), -carry(x.polynomial), needed[name])
-            for name, x in zip(names, residuals, strict=True)
-        ]
-
-    return decide("equilibrium", routes, exact, pairs)
-
-
-def _pairs(system: System, ring: Ring, linear: Linearisation, dependent: Dependent, balls: bool) -> list[Pair]:
-    state = unperturbed_state(system, ring, dependent, balls)
-    disturbed, direction, pushes = _disturbed(system, state)
-    residuals = {name: x.b for name, x in Oracle(system, disturbed).residuals.items()}
-    return matrix_pairs(ring, linear, dependent, state, direction, pushes, residuals)
 
 
 def matrix_pairs(
@@ -213,24 +177,6 @@ def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: b
         values[velocity_name(name)] = lower(add(rate, speed))
         values[acceleration_name(name)] = lower(time_derivative(speed, system))
     return State(numbers, values)
-
-
-def _disturbed(system: System, state: State) -> tuple[State, list[tuple[Scalar, Scalar, Scalar]], list[Scalar]]:
-    """The state with a random disturbance as first coefficient, and the disturbance itself: (dx, dx', dx''), and dv."""
-    source = random.Random(SEED + 1)
-    zero = state.numbers.zero
-    values = {name: Dual(value, zero) for name, value in state.values.items()}
-    direction = []
-    for name in system.coordinates:
-        parts = []
-        for key in (name, velocity_name(name), acceleration_name(name)):
-            part = state.numbers.number(source.randint(1, 9))
-            values[key] = Dual(state.values[key], part)
-            parts.append(part)
-        direction.append((parts[0], parts[1], parts[2]))
-    pushes = [state.numbers.number(source.randint(1, 9)) for _ in system.inputs]
-    values |= {name: Dual(state.values[name], push) for name, push in zip(system.input_names, pushes, strict=True)}
-    return State(FirstOrder(state.numbers, values), values), direction, pushes
 
 
 def check_integrals(truth: Oracles, programs: Programs, first_integrals: Sequence[Integral]) -> Check:

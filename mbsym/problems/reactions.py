@@ -89,12 +89,8 @@ class Reaction(Shown):
         return sum(x.terms for x in (*self.force, *self.moment))
 
 
-def reactions(
-    scene: Scene, tied: Constraints | None, programs: ConstrainedPrograms | None = None
-) -> tuple[Reaction, ...]:
+def reactions(scene: Scene, tied: Constraints, programs: ConstrainedPrograms) -> tuple[Reaction, ...]:
     """The reactions that the description asks for (scene over the ring).  Raises NoClosedForm."""
-    if tied is None or programs is None:
-        return tuple(_reaction(scene, reaction) for reaction in recursion.reactions(scene, scene.system.reactions, ()))
     own = [tied.names[i] for i in tied.independent]
     others = [name for name in _all_rows(scene) if name not in own]
     rows = [(name.constraint, name.component) for name in (*own, *others)]
@@ -237,7 +233,7 @@ def released(system: System, body: str) -> tuple[System, tuple[str, ...]]:
 
 
 def check_reactions(
-    truth: Oracles, listed: Sequence[Reaction], tied: Constraints | None, programs: ConstrainedPrograms | None
+    truth: Oracles, listed: Sequence[Reaction], tied: Constraints, programs: ConstrainedPrograms
 ) -> Check:
     """Forces and moments by the recursion against what the released joint would have to be held with.
 
@@ -249,7 +245,7 @@ def check_reactions(
     def at(state: State) -> list[Pair]:
         return [pair for reaction in listed for pair in _pairs(system, ring, reaction, state, tied)]
 
-    if tied is None or programs is None:
+    if not tied.names:
         return compare(truth, "reactions", routes, lambda oracle: at(oracle.state), states=2)
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.constraints.checks import compared_on_manifold
@@ -257,7 +253,7 @@ def check_reactions(
     return compared_on_manifold("reactions", routes, SpeedForm(system, ring), programs, lambda point: at(point.state))
 
 
-def _pairs(system: System, ring: Any, reaction: Reaction, state: State, tied: Constraints | None) -> list[Pair]:
+def _pairs(system: System, ring: Any, reaction: Reaction, state: State, tied: Constraints) -> list[Pair]:
     loose, names = released(system, reaction.body)
     numbers, zero = state.numbers, state.numbers.zero
     held = {**state.values}
@@ -270,7 +266,7 @@ def _pairs(system: System, ring: Any, reaction: Reaction, state: State, tied: Co
     carry = Carrier(ring, numbers, state.values)
     compared: list[Pair] = []
     along: list[tuple[str, Any, list[Any]]] = [("", None, [oracle.residuals[name] for name in names])]
-    if tied is not None:
+    if tied.names:
         from mbsym.mechanics.constraints.oracle import oracle_rows
 
         rows = oracle_rows(loose, oracle.state)

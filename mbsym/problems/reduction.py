@@ -1,10 +1,10 @@
-"""Problems 4 and 5 of constrained systems: the motion, and what remains of the coordinates in the first approximation.
+"""Problems 4 and 5: the motion, and what constraints leave of the coordinates in the first approximation.
 
 The motion exists where the constraints hold on it and the forces that they do not carry vanish,
 
     f(q, t) = 0,    J q' + j = 0,    J q'' + (J' q' + j') = 0,    Y^T (M q'' - f) = 0    (J Y = 0),
 
-and its first approximation is that of the independent quantities (``mbsym.mechanics.constraints.expansion``): dependent
+and its first approximation is that of the independent quantities (``mbsym.mechanics.expansion``): dependent
 ones are expanded, not solved for.  Coordinates that no equation of the speeds feels drop out.  A coordinate that is
 felt although its velocity is dependent (the place of a sphere in a dish, where it is told by its angles) follows the
 others by an equation of first order of its own,
@@ -30,66 +30,12 @@ from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import names as names_of
-from mbsym.formulas.formula import Formula, Shown
-from mbsym.mechanics.constraints.expansion import Expansion, Projected, Row, echelon, felt
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.expansion import Expansion, Projected, Row, echelon, felt
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import expressions
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.linearisation import Linearisation, assemble
-
-
-@dataclass(frozen=True, repr=False)
-class Reduction(Shown):
-    """Which quantities the first approximation of a constrained system is about.
-
-    ``coordinates`` and ``speeds`` are the independent ones, ``dependent_coordinates`` and ``dependent_speeds`` the
-    others; ``idle`` are independent coordinates that no equation of the speeds depends on, ``following`` those that are
-    felt although their velocities are dependent.  ``rates`` are velocities of the motion that follow from the
-    constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every constraint is one between
-    coordinates, as it is given.  ``family``: the derivatives of the coordinate, and of its velocity, by the parameters
-    that stand in the motion only, of every speed and then of all that follow: by these the description gives a family
-    of motions.  ``leaf``: how many relations between coordinates the velocity constraints keep, all of them proved to
-    be integrable, so that the first approximation is that on the leaf of the motion; 0 where they are not.
-    """
-
-    coordinates: tuple[str, ...]
-    speeds: tuple[str, ...]
-    dependent_coordinates: tuple[str, ...]
-    dependent_speeds: tuple[str, ...]
-    idle: tuple[str, ...]
-    rates: tuple[tuple[str, Formula], ...]
-    assumed: tuple[Formula, ...]
-    holonomic: bool
-    family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...]
-    following: tuple[str, ...] = ()
-    leaf: int = 0
-
-    @property
-    def about(self) -> tuple[str, ...]:
-        """The coordinates of the first approximation: those of the speeds, then those that follow."""
-        return (*self.speeds, *self.following)
-
-    @property
-    def rates_by_name(self) -> dict[str, Polynomial]:
-        """``rates`` as a mapping."""
-        return {name: rate.polynomial for name, rate in self.rates}
-
-    def dimension(self, places: Sequence[int], signs: Signs) -> int:
-        """In how many dimensions the motions of the family differ in these coordinates and their speeds, at least.
-
-        ``places`` are among those of ``about``.  Coordinates that drop out are not counted.
-        """
-        rows: list[Row] = []
-        for k in places:
-            (values, rates), name = self.family[k], self.about[k]
-            lines = (rates,) if name in self.idle else (values,) if name in self.following else (values, rates)
-            for line in lines:
-                rows.append({p: x.polynomial for p, x in enumerate(line)})
-        if not rows or not rows[0]:
-            return 0
-        ring = self.family[0][0][0].ring
-        reduced = echelon(ring, signs, rows, range(len(rows[0])))
-        return len(reduced.pivots) - len(reduced.assumed)
+from mbsym.problems.linearisation import Linearisation, Reduction, assemble
 
 
 @dataclass(frozen=True)
@@ -153,6 +99,24 @@ def reduction(scene: Scene, expanded: Expansion, equations: Projected, leaf: int
     )
 
 
+def dimension(about: Reduction, places: Sequence[int], signs: Signs) -> int:
+    """In how many dimensions the motions of the family differ in these coordinates and their speeds, at least.
+
+    ``places`` are among those of ``about``.  Coordinates that drop out are not counted.
+    """
+    rows: list[Row] = []
+    for k in places:
+        (values, rates), name = about.family[k], about.about[k]
+        lines = (rates,) if name in about.idle else (values,) if name in about.following else (values, rates)
+        for line in lines:
+            rows.append({p: x.polynomial for p, x in enumerate(line)})
+    if not rows or not rows[0]:
+        return 0
+    ring = about.family[0][0][0].ring
+    reduced = echelon(ring, signs, rows, range(len(rows[0])))
+    return len(reduced.pivots) - len(reduced.assumed)
+
+
 def _by(ring: Ring, x: Polynomial, index: int) -> Formula:
     return Formula(ring, x.derivative(index))
 
@@ -168,8 +132,8 @@ def _of_the_motion_alone(scene: Scene) -> list[int]:
     return [index for index in indices if index not in inner]
 
 
-def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> Linearisation:
-    """Problem 5 of a constrained system: the equations of the speeds, and x_f' - S eta - T x = 0 of what follows.
+def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium | None) -> Linearisation:
+    """Problem 5: the equations of the independent speeds, and x_f' - S eta - T x = 0 of what follows.
 
     Raises SingularPoint, NoClosedForm.
     """
@@ -192,5 +156,4 @@ def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> L
         gains.append([ring.zero] * len(inputs))
     a, b, c, d = (ScalarMatrix(ring, rows) for rows in (mass, velocity, position, gains))
     parts = (a, b, c, d)
-    whole = assemble(scene, equilibrium, parts, "constraints expanded, equations projected", inputs, about.about)
-    return replace(whole, constrained=about)
+    return assemble(scene, equilibrium, parts, "Newton-Euler recursion to first order", inputs, about)

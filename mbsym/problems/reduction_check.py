@@ -29,14 +29,15 @@ from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
 from mbsym.mechanics.states import SEED
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, Check, NoMotionThere, Pair, agreement, decide
-from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.linearisation import Linearisation, Reduction
 from mbsym.problems.perturbation import Dependent, has_rational_states, matrix_pairs, unperturbed_state
-from mbsym.problems.reduction import Reduction
-
-ROUTE = Message("[[principle]], with multipliers", principle=D_ALEMBERT)
 
 
-def check_reduced_motion(
+def _route(about: Reduction) -> Message:
+    return Message("[[principle]], with multipliers", principle=D_ALEMBERT) if about.ties else Message(D_ALEMBERT)
+
+
+def check_motion(
     system: System, ring: Ring, residuals: Sequence[Formula], about: Reduction, dependent: Dependent
 ) -> Check:
     """Problem 4: ``residuals`` are those of the constraints and, last, of the equations of the independent speeds."""
@@ -55,13 +56,12 @@ def check_reduced_motion(
         ]
 
     exact = has_rational_states(system, ring, dependent, about.rates_by_name)
-    return decide("equilibrium", ("equations projected on the motion", ROUTE), exact, pairs)
+    return decide("equilibrium", ("Newton-Euler recursion on the motion", _route(about)), exact, pairs)
 
 
-def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
+def check_perturbed_motion(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
     """Problem 5; undecided where a condition of problem 4 is solved for no parameter."""
-    about = linear.constrained
-    assert about is not None
+    about = linear.about
 
     def pairs(balls: bool) -> list[Pair]:
         place = _Disturbed(system, ring, about, dependent, balls)
@@ -76,7 +76,7 @@ def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation
     exact = has_rational_states(system, ring, dependent, about.rates_by_name)
     return decide(
         "perturbed motion",
-        ("matrices of the first approximation", Message("[[principle]], disturbed", principle=ROUTE)),
+        ("matrices of the first approximation", Message("[[principle]], disturbed", principle=_route(about))),
         exact,
         pairs,
     )

@@ -103,8 +103,7 @@ def groups(scene: Scene, equations: Equations | SpeedEquations) -> Groups:
             weight: Weights = {key: -power for key, power in column.items()}
             weight[TIME] = weight.get(TIME, Fraction(0)) + 1
             made.equal(entry, {("equation", i): Fraction(1), **weight})
-    if equations.constraints is not None:
-        made.constrained(equations.constraints, columns)
+    made.constrained(equations.constraints, columns)
     for item in scene.system.prescribed:
         own: Weights = {("coordinate", item.name): Fraction(1)}
         made.equal(scene.lower(item.rate), {**own, TIME: Fraction(-1)})

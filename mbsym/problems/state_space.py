@@ -8,7 +8,7 @@ in physical time and declared parameters, on the right the matrices of problem 5
 are held, y0 those of the outputs on the unperturbed motion.  M^-1 is the adjugate over the determinant, exactly in the
 ring, part by part of what M couples.
 
-Under constraints it is the whole flow on what they allow (``mbsym.mechanics.constraints.expansion``): x = (q_i, nu_k)
+Under constraints it is the whole flow on what they allow (``mbsym.mechanics.expansion``): x = (q_i, nu_k)
 with the independent coordinates and the independent velocities, which need not be of the same coordinates, none of
 them left out,
 
@@ -37,7 +37,7 @@ from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Matrix, Shown
-from mbsym.mechanics.constraints.expansion import combined, on_base
+from mbsym.mechanics.expansion import combined, on_base
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import steadied
 from mbsym.model.system import velocity_name
@@ -73,41 +73,37 @@ class StateSpace(Shown):
         return self.A.terms + self.B.terms + self.C.terms + self.D.terms
 
 
-def state_space(scene: Scene, expanded: Scene | None, linear: Linearisation, equilibrium: Equilibrium) -> StateSpace:
-    """A, B, C, D, with ``expanded`` the system over jets; functions of the time where the motion is not steady.
-
-    A system that is given by its matrices has no outputs, and is not expanded.  Raises NoClosedForm where M couples too
-    many coordinates; SingularPoint where M is singular for all parameters.
-    """
-    ring, system = scene.ring, (expanded or scene).system
-    n, m = len(linear.coordinates), len(linear.inputs)
+def of_matrices(scene: Scene, linear: Linearisation) -> StateSpace:
+    """A and B of a system that is given by its matrices; raises as ``state_space``."""
+    ring, system = scene.ring, scene.system
+    n, m, model = len(linear.coordinates), len(linear.inputs), scene.system.linear
     stiffness = _sum(ring, linear.K.polynomials, linear.N.polynomials, -1)
     damping = _sum(ring, linear.D.polynomials, linear.G.polynomials, -1)
     gains = [[] for _ in range(n)] if linear.B is None else [list(row) for row in linear.B.polynomials]
-    if system.linear is not None and system.linear.of_first_order:  # M = 0, D + G = 1
-        A, B = Matrix.of(ring, stiffness), Matrix.of(ring, gains)
-        return StateSpace(system.coordinates, linear.inputs, (), A, B, Matrix.of(ring, []), Matrix.of(ring, []))
+    nothing = Matrix.of(ring, [])
+    if model is not None and model.of_first_order:  # M = 0, D + G = 1
+        return StateSpace(
+            system.coordinates, linear.inputs, (), Matrix.of(ring, stiffness), Matrix.of(ring, gains), nothing, nothing
+        )
     right = [[*stiffness[i], *damping[i], *gains[i]] for i in range(n)]
-    solved = _solved(ring, [list(row) for row in linear.M.polynomials], right)
+    lower = _solved(ring, [list(row) for row in linear.M.polynomials], right)
     upper = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
-    images = equilibrium.determined(scene)
-    slopes = [expanded.lower(output.value).first for output in system.outputs] if expanded is not None else []
-    measured = [
-        [steadied(scene, ring.substitute(row.get(k, ring.zero), images)) for k in range(2 * n + m)] for row in slopes
-    ]
     return StateSpace(
         states=(*system.coordinates, *system.velocities),
         inputs=linear.inputs,
-        outputs=tuple(output.name for output in system.outputs),
-        A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in solved)]),
-        B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in solved)]),
-        C=Matrix.of(ring, [row[: 2 * n] for row in measured]),
-        D=Matrix.of(ring, [row[2 * n :] for row in measured]),
+        outputs=(),
+        A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in lower)]),
+        B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in lower)]),
+        C=nothing,
+        D=nothing,
     )
 
 
-def reduced_state_space(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> StateSpace:
-    """The same of a constrained system.  Raises as ``state_space``, which also has what is said of the matrices."""
+def state_space(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> StateSpace:
+    """A, B, C, D; functions of the time where the motion is not steady.
+
+    Raises NoClosedForm where M couples too many coordinates; SingularPoint where M is singular for all parameters.
+    """
     ring, expansion, equations = scene.ring, reduced.expansion, reduced.equations
     system, n = expansion.scene.system, len(scene.system.coordinates)
     names, inputs = scene.system.coordinates, system.input_names

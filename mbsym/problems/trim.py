@@ -17,7 +17,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
 from mbsym.formulas.formula import Formula, Shown
-from mbsym.mechanics.constraints.expansion import Row, echelon
+from mbsym.mechanics.expansion import Row, echelon
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.assumptions import RELATION_OF_SIGN
 from mbsym.problems.equilibrium import equilibrium, essential

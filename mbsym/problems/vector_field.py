@@ -65,7 +65,7 @@ def vector_field(
     functions other than exponentials occur.
     """
     tied = equations.constraints
-    if rooted and (tied is None or not tied.position_rank):  # else reciprocals may be tied by what ties positions
+    if rooted and not tied.position_rank:  # else reciprocals may be tied by what ties positions
         with suppress(NoClosedForm):
             field, transfer = _of(_State(form, equations, images, driven, rooted, divided=True), also)
             if field.are_solved:
@@ -466,14 +466,12 @@ def _in_monomials(polynomials: Sequence[Polynomial]) -> fmpz_mat:
 
 def _free(
     form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial]
-) -> tuple[Equations | Embedded, Mapping[int, Polynomial], list[Polynomial]]:
+) -> tuple[Embedded, Mapping[int, Polynomial], list[Polynomial]]:
     """The equations of the independent velocities, the dependent ones by these (q' = Y u), and what ties positions.
 
     The last are polynomials that vanish.  A coordinate that one of them gives is put in, as dependent velocities are.
     """
     tied, ring = equations.constraints, form.ring
-    if tied is None:
-        return equations, NOTHING, []
     if equations.embedded is None or tied.solved is None:
         raise NoClosedForm("the equations without multipliers outgrow the budget of terms")
     from mbsym.problems.constraints.motion import dependent_velocities  # few systems have constraints

@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.reducing import Reduced
     from mbsym.analysis.scaled import Formulas
-    from mbsym.problems.constraints.result import Solved
     from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.stability.problem import SubsystemStability
     from mbsym.problems.stability.verdict import Verdict
@@ -111,13 +110,12 @@ def _equations(analysis: Analysis) -> Iterator[Line]:
         yield from (Line("", x) for x in analysis.linearisation.equalities)
         return
     equations = analysis.equations
-    tied = equations.constraints
     for x, forces in balances(equations, analysis.system):
         yield Line("", x, right=tuple((factor, f"lambda{k}") for factor, k in forces))
     if equations.in_speeds:
         own = cast("SpeedEquations", equations)
         yield from (Line(Formula(x.ring, x.ring.generator("velocity", name)), x) for name, x in own.kinematic)
-    if tied is not None:
+    if equations.constraints.names:
         yield from _constraints(analysis)
 
 
@@ -151,7 +149,7 @@ def _with_loads(analysis: Analysis, loads: tuple[Load, ...]) -> Analysis:
 def _constraints(analysis: Analysis) -> Iterator[Line]:
     """The constraints in velocities, row by row."""
     tied = analysis.equations.constraints
-    if tied is None:
+    if not tied.names:
         raise NoClosedForm("the system has no constraints")
     for name, value in zip(tied.names, tied.velocity, strict=True):
         text = "constraint [[number]] ([[kind]])"
@@ -168,9 +166,8 @@ def accelerations(analysis: Analysis) -> Column:
     There dependent velocities are expressed by the independent u.  Raises NoClosedForm where these equations have none,
     and for more than ``MOST_SOLVED`` rows.
     """
-    equations, solved = analysis.equations, _solved(analysis)
-    short = equations if equations.constraints is None else equations.embedded
-    if short is None or (solved is None) != (equations.constraints is None):
+    short, solved = analysis.equations.embedded, analysis.equations.constraints.solved
+    if short is None or solved is None:
         raise NoClosedForm(
             "without multipliers the equations are longer than the budget of terms (--terms); 'equations' has them "
             "with multipliers, and model.py computes accelerations"
@@ -188,31 +185,23 @@ def accelerations(analysis: Analysis) -> Column:
         inverse = ring.reciprocal(determinant(ring, own))
         for i, top in zip(block, cramer(ring, own, [short.forcing[i].polynomial for i in block]), strict=True):
             rates[i] = ring.reduce(ring.times(top, inverse))
-    if solved is None:
-        return column(ring, rates)
     images = dependent_velocities(analysis.form, solved)
     shifts = [ring.reduce(ring.substitute(x.polynomial, images)) for x in solved.acceleration_shift]
     lines = zip(solved.transformation.polynomials, shifts, strict=True)
     return column(ring, [ring.reduce(ring.dot(line, rates) + shift) for line, shift in lines])
 
 
-def _solved(analysis: Analysis) -> Solved | None:
-    """The constraints solved for the dependent velocities; None without constraints, or beyond the budget."""
-    tied = analysis.equations.constraints
-    return None if tied is None else tied.solved
-
-
 def _accelerations(analysis: Analysis) -> Iterator[Line]:
-    found, solved, tied = accelerations(analysis), _solved(analysis), analysis.equations.constraints
+    found, tied = accelerations(analysis), analysis.equations.constraints
     remark = ""
-    if tied is not None:
+    if tied.names:
         text = "without multipliers, dependent velocities expressed by the independent ones: [[names]]"
         remark = Message(text, names=", ".join(tied.free) or "-")
     for rate, x in zip(_rates(analysis), found, strict=True):
         yield Line(_moving(x.ring, rate), x, remark=remark)
         remark = ""
-    if solved is not None and not solved.regular_everywhere:
-        yield Line("", solved.regular_where, "!=", Message("regular where"))
+    if tied.solved is not None and not tied.solved.regular_everywhere:
+        yield Line("", tied.solved.regular_where, "!=", Message("regular where"))
 
 
 def _rates(analysis: Analysis) -> tuple[str, ...]:
@@ -470,7 +459,7 @@ def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
     first = sum((x * rate for x, rate in zip(equations.mass_matrix.rows[at], moving, strict=True)), moving[0] * 0)
     rest = equations.equalities(names)[at] - first
     others = Message("its other terms; the sum is zero")
-    if equations.constraints is not None:
+    if equations.constraints.names:
         others = Message("its other terms; the sum is zero but for the forces of constraints")
     yield Line("", first, "", Message("the terms with accelerations in the equation of [[name]]", name=name))
     yield Line("", rest, "", others)

@@ -102,7 +102,7 @@ class Results:
         if stability is None:
             return ()
         text, linear = provided(stability, motion, bool(self.system.inputs)), self.analysis.optional("linearisation")
-        assumed = () if linear is None or linear.constrained is None else linear.constrained.assumed
+        assumed = () if linear is None else linear.about.assumed
         where = say("where [[conditions]]", conditions=[Relation(x, "!=", 0) for x in assumed])
         return (*((", ", worded(text)) if text else ()), *((", ", where) if assumed else ()))
 

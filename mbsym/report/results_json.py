@@ -110,8 +110,7 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
 
         stage = analysis.stage_of("reactions")
         if stage.failure is None:
-            tied = analysis.constraints if system.constraints else None
-            derived["reactions"] = reaction_data(stage.value, tied, write)
+            derived["reactions"] = reaction_data(stage.value, analysis.constraints, write)
         else:
             unavailable["reactions"] = doc.Failure.from_result(stage.failure)
     state = analysis.optional("first_order") if system.speeds and 5 in problems else None

@@ -84,7 +84,7 @@ def trim(context: Asked, request: Request, watch: Watch) -> Trim:
 
         message = Message("the equations vary with [[names]] on this motion", names=", ".join(equilibrium.unsteady))
         raise NoClosedForm(message)
-    assumed = [x.polynomial for x in analysis.reduced.about.assumed] if analysis.system.constraints else []
+    assumed = [x.polynomial for x in analysis.reduced.about.assumed]
     residuals = [x.polynomial for x in equilibrium.residuals]
     return found_of(analysis.parameters_scene, residuals, unknowns, analysis.signs, assumed)
 

@@ -23,10 +23,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from mbsym.analysis import approximation
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.soundness import complain
 from mbsym.analysis.stages import Unavailable
-from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.model.system import System
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
@@ -374,12 +374,12 @@ def test_inputs_and_outputs_of_a_segway() -> None:
 
 def test_a_dropped_coordinate_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the change of Y with the position (Y_x^T r_0) forces of the rows have no stiffness."""
-    whole = perturbed.projected
+    whole = approximation.projected
 
     def without(scene: Any, found: Any) -> Any:
         return whole(scene, replace(found, slopes=tuple(tuple({} for _ in line) for line in found.slopes)))
 
-    monkeypatch.setattr(perturbed, "projected", without)
+    monkeypatch.setattr(approximation, "projected", without)
     texts = [masses(Random(f"masses {seed}"), False) for seed in range(6)]
     failed = 0
     for text in texts:

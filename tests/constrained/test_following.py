@@ -44,8 +44,8 @@ def sleigh() -> Analysis:
 def test_the_matrices_are_those_found_by_hand(sleigh: Analysis) -> None:
     found = sleigh.linearisation
     assert found.coordinates == ("x", "phi", "y")
-    assert found.constrained is not None
-    assert (found.constrained.idle, found.constrained.following) == (("x",), ("y",))
+    assert found.about.ties
+    assert (found.about.idle, found.about.following) == (("x",), ("y",))
     velocity = [[found.D[i, j].polynomial + found.G[i, j].polynomial for j in range(3)] for i in range(3)]
     position = [[found.K[i, j].polynomial + found.N[i, j].polynomial for j in range(3)] for i in range(3)]
     p = {name: sleigh.ring.generator("parameter", name) for name in "mJabkv"}

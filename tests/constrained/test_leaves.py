@@ -13,8 +13,8 @@ import pytest
 from conftest import analysed
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.analysis import approximation
 from mbsym.analysis.pipeline import Analysis
-from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis, integrability
 from mbsym.problems.stability.words import Because, Word
@@ -52,9 +52,9 @@ def test_the_matrices_are_those_of_the_leaf() -> None:
     for given in (BY_RATE, BY_PLACE):
         found = bead(given=given).linearisation
         assert [str(x) for x in found.matrices] == ["[[2*m]]", "[[2*c]]", "[[0]]", "[[4*k]]", "[[0]]"]
-        assert found.constrained is not None
-        assert found.constrained.holonomic
-        assert found.constrained.leaf == (given is BY_RATE)
+        assert found.about.ties
+        assert found.about.holonomic
+        assert found.about.leaf == (given is BY_RATE)
 
 
 @pytest.mark.parametrize("a", ["2", "sqrt(2)"])
@@ -100,7 +100,7 @@ def test_a_part_that_decays_beside_one_that_does_not_is_stable() -> None:
 
 
 def test_the_report_says_that_it_is_about_the_leaf() -> None:
-    about = bead().linearisation.constrained
+    about = bead().linearisation.about
     assert about is not None
     told = " ".join(map(Writer().said, reduction_sentences(about)))
     assert "integrable (Frobenius; proved): they keep relations between the coordinates, 1 in number" in told
@@ -116,14 +116,14 @@ def test_multipliers_agree() -> None:
 
 def test_a_stiffness_that_forgets_the_leaf_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """C of the independent coordinates in place of C Y_0."""
-    original = perturbed.on_leaf
+    original = approximation.on_leaf
 
     def wrong(scene: Any, found: Any, equations: Any) -> Any:
         there, own = original(scene, found, equations)
         short = tuple(row[: len(own.A)] for row in equations.C)
         return there, dataclasses.replace(own, C=short)
 
-    monkeypatch.setattr(perturbed, "on_leaf", wrong)
+    monkeypatch.setattr(approximation, "on_leaf", wrong)
     check = bead().check("perturbed motion")
     assert check is not None
     assert check.outcome == FAILED
@@ -141,7 +141,7 @@ def test_what_is_not_proved_is_no_leaf(monkeypatch: pytest.MonkeyPatch) -> None:
     known = found.constraints.integrability
     assert known is not None
     assert (known.word, known.certainty.value) == ("holonomic", "verified numerically")
-    about = found.linearisation.constrained
+    about = found.linearisation.about
     assert about is not None
     assert (about.leaf, about.holonomic) == (0, False)
     verdict = found.stability.numerical

@@ -10,8 +10,8 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.mechanics.constraints import expansion
-from mbsym.mechanics.constraints import expansion as perturbed
+from mbsym.analysis import approximation
+from mbsym.mechanics import expansion
 from mbsym.problems.checks import FAILED
 
 
@@ -56,13 +56,13 @@ def test_a_mistake_is_found(
 
 def test_forces_of_the_constraints_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     """A sign of the projected forcing: problem 4's own check is the one that finds it, where there is any force."""
-    original = perturbed.projected
+    original = approximation.projected
 
     def wrong(scene: Any, found: Any) -> Any:
         right = original(scene, found)
         return replace(right, constant=tuple(x + scene.ring.one for x in right.constant))
 
-    monkeypatch.setattr(perturbed, "projected", wrong)
+    monkeypatch.setattr(approximation, "projected", wrong)
     analysis = mbsym.load(SHIPPED / "cartesian-pendulum.yaml")
     with pytest.raises(mbsym.analysis.Unavailable):
         _ = analysis.equilibrium

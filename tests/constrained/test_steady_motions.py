@@ -208,7 +208,7 @@ def test_what_was_divided_by_must_not_vanish_at_the_values(p: str, word: Word) -
         f"{{m: 1, l: 1, g: 10, p: {{sign: real, value: {p}}}, q: {{sign: real, value: 1}}}}",
     )
     found = analysed(text)
-    about = found.linearisation.constrained
+    about = found.linearisation.about
     assert about is not None
     assert [str(x) for x in about.assumed] == ["p"]
     assert found.stability.numerical is not None

@@ -26,9 +26,9 @@ DRIVEN = {
 MISTAKES = [
     Mistake(
         "the sign of B in one route",
-        "problems.linearisation:by_quadratisation",
-        "B = slopes(u, len(inputs))",
-        "B = -slopes(u, len(inputs))",
+        "mechanics.expansion:projected",
+        "tuple(-x for x in row)",
+        "tuple(x for x in row)",
         "driven",
         (LINEARISATION, PERTURBED),
     ),
@@ -42,7 +42,7 @@ MISTAKES = [
     ),
     Mistake(
         "the values of inputs in matrices of the other route",
-        "problems.linearisation:quadratised",
+        "mechanics.expansion:over_jets",
         "jets.deviation(numbers[name], value)",
         "jets.deviation(numbers[name], ring.zero)",
         "driven",

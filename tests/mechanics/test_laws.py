@@ -32,7 +32,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.states import rational_states
-from mbsym.problems import checks, linearisation, perturbation
+from mbsym.problems import checks, linearisation, perturbation, reduction, reduction_check
 from mbsym.problems.checks import EXACT, NUMERICAL
 
 law = settings(max_examples=20, derandomize=True)
@@ -81,7 +81,7 @@ def test_self_checks_hold_with_roots_and_functions(description: Description) -> 
 
 @some
 @given(st.one_of(spinning(), resting()))
-def test_quadratised_and_linearised_equations_agree(description: Description) -> None:
+def test_expanded_and_differentiated_equations_agree(description: Description) -> None:
     analysis = analysed(description)
     assert passed(analysis, EXACT)
     impossible = "does not exist" in getattr(analysis.stage(5).failure, "reason", "")
@@ -109,15 +109,15 @@ def test_relations_are_used_alike_by_both_routes(description: Description, relat
 @law
 @given(driving())
 def test_prescribed_motions_enter_both_routes_of_the_first_approximation_alike(description: Description) -> None:
-    """Quadratised Lagrangian == differentiated equations == disturbed d'Alembert, however the coefficients vary."""
+    """Recursion to first order == differentiated equations == disturbed d'Alembert, however the coefficients vary."""
     analysis = analysed(description)
     assume(analysis.system.coordinates)
-    quadratic = linearisation.by_quadratisation(analysis.parameters_scene, analysis.expanded, None)
+    expanded = reduction.by_projection(analysis.parameters_scene, analysis.reduced, None)
     closed = linearisation.by_equations(analysis.scene, analysis.equations, None)
-    agreement = checks.check_linearisation(analysis.ring, quadratic, closed)
+    agreement = checks.check_linearisation(analysis.ring, expanded, closed)
     assert agreement.outcome == EXACT, agreement
     nothing = perturbation.Dependent({}, {})
-    disturbed = perturbation.check_perturbed_motion(analysis.system, analysis.ring, quadratic, nothing)
+    disturbed = reduction_check.check_perturbed_motion(analysis.system, analysis.ring, expanded, nothing)
     assert disturbed.outcome in (EXACT, NUMERICAL), disturbed
 
 

@@ -12,10 +12,10 @@ sys.path.append(str(Path(__file__).parents[1] / "bench"))
 import chains
 
 import mbsym
+from mbsym.analysis import approximation
 from mbsym.analysis.approximation import regular_at_zero
 from mbsym.analysis.stages import Unavailable
 from mbsym.model.system import System
-from mbsym.problems import linearisation
 
 PARTICLE = """
 mbsym: 1
@@ -94,13 +94,13 @@ def test_rest_is_looked_at_without_products_of_deviations_where_nothing_is_singu
 ) -> None:
     """A chain of n bodies has n**2 of them in every formula."""
     orders: list[int] = []
-    expand = linearisation.quadratised
+    expand = approximation.over_jets
 
-    def counted(scene: Any, whole: Any = None, order: int = 2) -> Any:
+    def counted(scene: Any, base: Any, whole: Any = None, order: int = 1) -> Any:
         orders.append(order)
-        return expand(scene, whole, order)
+        return expand(scene, base, whole, order)
 
-    monkeypatch.setattr(linearisation, "quadratised", counted)
+    monkeypatch.setattr(approximation, "over_jets", counted)
     text = chains.description(chains.chain(8, full=False))
     with pytest.raises(Unavailable) as told:
         mbsym.loads(text).stability  # noqa: B018

@@ -19,9 +19,9 @@ LIFT = TESTS / "cases" / "statements" / "lift.yaml"
 #: Without it the falling lift hangs stably: K = m l g in place of m l (g + a).
 ACCELERATION = Mistake(
     "the acceleration of a prescribed motion",
-    "problems.linearisation:by_quadratisation",
-    "P + rate(A)",
-    "P",
+    "mechanics.newton_euler:Accelerations._step",
+    "at + second, name",
+    "at, name",
     "lift",
     (),
 )

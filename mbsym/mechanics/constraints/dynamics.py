@@ -54,7 +54,7 @@ from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept
 from mbsym.mechanics.constraints.speed_rows import speed_rows, state_rows
 from mbsym.mechanics.factorisation import Elimination, mass_matrix
 from mbsym.mechanics.kinematics import Scene, over_ring
-from mbsym.mechanics.programs import scene_without_accelerations
+from mbsym.mechanics.programs import forward_dynamics, scene_without_accelerations
 from mbsym.mechanics.speed_programs import restoring, speed_program
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import SEED, drawn
@@ -172,8 +172,14 @@ def constrained_dynamics(
     ``pushed``: names of inputs of the program that are forces on these coordinates besides those of the loads.
     ``massless``: M is known to be singular everywhere; where that is seen from a pivot, it need not be said.  Raises
     SingularPoint where M is singular on what the constraints allow or the rows are dependent at sight, NoClosedForm as
-    loads do.
+    loads do.  Without rows it is ``forward_dynamics``, which may know a cheaper way.
     """
+    if not chosen.rows:
+        free, still = forward_dynamics(system, ring, apart=apart, pushed=pushed), [0] * len(system.coordinates)
+        nothing = tuple(map(free.program.number, still))
+        return ConstrainedDynamics(
+            free.program, free.environment, (), free.accelerations, (), free.pivots, (), nothing, nothing
+        )
     if not massless:
         with suppress(SingularPoint):  # a pivot of M is zero
             return _constrained_dynamics(system, ring, chosen, apart, False, pushed)

@@ -308,7 +308,7 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
             continue  # there is no such result, so nothing was saved
         why = Message("liveness: nobody asked for it, and nothing that was asked for needs it")
         if number == 3 and "linearisation" in analysis.derived:
-            why = joined([why, Message("the linearisation is that of the quadratised Lagrangian")], "; ")
+            why = joined([why, Message("the linearisation is expanded while the equations are built")], "; ")
         what = Message("problem [[number]], [[title]]", number=number, title=worded(problem.title))
         measures = counted.measures(Counted(0, 0, 0.0), Message("it"))
         yield Saving(Kind.NOT_ASKED, (what,), why, Certainty.PROVED, measures)

@@ -113,11 +113,10 @@ def exponents(
 
     ``every``: how often the columns are made orthogonal again.  A motion that breaks down, or Ctrl-C, ends it early.
     """
-    constraints = dynamics.constraints
     state = np.array([float(x) for x in dynamics.scenario.state])
-    basis = np.eye(len(state)) if constraints is None else constraints.tangent(0.0, state)
+    basis = dynamics.tangent(0.0, state)
     most = basis.shape[1]
-    near = 0.0 if constraints is None else RESTS * about(dynamics, 0.0, state).sizes[:, 0]
+    near = 0.0 if dynamics.constraints is None else RESTS * about(dynamics, 0.0, state).sizes[:, 0]
     flow = Flow(dynamics, tolerance, most if count is None else min(count, most))
     intervals = max(LEAST_INTERVALS, int(np.ceil(time / every)))
     ends = np.linspace(0.0, time, intervals + 1)
@@ -149,7 +148,7 @@ def exponents(
     error = abs(float(np.sum(values)) - divergence) if flow.columns == most else float("nan")
     doubt, linear = _uncertainty(rates, times, tolerance), dynamics.linear
     # What a constraint drives is a variable more, though the rates may hold no time.
-    planar = most == 2 and autonomous(dynamics) and (constraints is None or constraints.steady)
+    planar = most == 2 and autonomous(dynamics) and dynamics.is_scleronomic
     return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, planar, resting)
 
 
@@ -186,15 +185,15 @@ def _mean_divergence(dynamics: Dynamics, starts: Any, panels: int, tolerance: fl
     plain, jacobian, size = Flow(dynamics, tolerance, 0), compiled_kernel(dynamics, "jacobian"), 2 * dynamics.size
     middles = (np.arange(panels)[:, None] + (1 + _NODES) / 2).reshape(-1) / panels
     weights = np.tile(_WEIGHTS / 2, panels) / panels
-    constraints, total = dynamics.constraints, 0.0
+    total = 0.0
     for state, start, end in starts:
         times = start + (end - start) * middles
         states = plain.along(state, start, times)
         rows = jacobian(np.vstack([times, states]))
-        if constraints is None:
+        if dynamics.constraints is None:
             traces = rows[:: size + 1].sum(axis=0)
         else:
-            bases = [constraints.tangent(t, x) for t, x in zip(times, states.T, strict=True)]
+            bases = [dynamics.tangent(t, x) for t, x in zip(times, states.T, strict=True)]
             whole = rows.reshape(size, size, -1)
             traces = np.array([np.sum(b * (whole[:, :, k] @ b)) for k, b in enumerate(bases)])
         total += (end - start) * float(weights @ traces)

@@ -133,10 +133,14 @@ def autonomous(dynamics: Dynamics) -> bool:
     return all(code.program.instructions[number].payload != "t" for number in live)
 
 
+def _allowed(dynamics: Dynamics, state: Any, scale: Any) -> Any:
+    """An orthonormal basis, in columns, of the changes in parts of ``scale`` that constraints allow at t = 0."""
+    return np.linalg.qr(dynamics.tangent(0.0, np.asarray(state, dtype=float)) / scale[:, None])[0]
+
+
 def conserves_energy(dynamics: Dynamics) -> bool:
     """Whether dh/dt vanishes as a program at these numbers, and constraints, if any, do not move by themselves."""
-    unmoved = dynamics.constraints is None or dynamics.constraints.steady
-    return unmoved and not dynamics.energy_power.outputs
+    return dynamics.is_scleronomic and not dynamics.energy_power.outputs
 
 
 def _cyclic_coordinates(dynamics: Dynamics, state: Any, sizes: Any, period: float) -> tuple[str, ...]:
@@ -314,9 +318,8 @@ class _Search:
 
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """
-        size, basis = self.flow.size, self.flow.tangent(here.state)
-        scale = self._weights(here.state)
-        allowed = np.diag(scale) if basis is None else scale[:, None] * np.linalg.qr(basis / scale[:, None])[0]
+        size, scale = self.flow.size, self._weights(here.state)
+        allowed = scale[:, None] * _allowed(self.flow.dynamics, here.state, scale)
         matrix, units = np.where(self.shifted[:, None], 0.0, here.phi - np.eye(size)), scale
         if self.wanted is not None:
             matrix = np.vstack([matrix, self.energy.gradient(here.state)])
@@ -412,8 +415,7 @@ def _orbit(
         )
     _, phi = flow.passage(state, 0.0, period)
     _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
-    basis = flow.tangent(state)
-    basis = np.eye(len(state)) if basis is None else np.linalg.qr(basis / scale[:, None])[0]
+    basis = _allowed(dynamics, state, scale)
     phi, other = (
         basis.T @ (matrix * scale / scale[:, None]) @ basis for matrix in (phi, other)
     )  # in parts of the sizes

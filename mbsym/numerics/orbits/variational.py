@@ -255,18 +255,13 @@ class Flow:
         self.size = 2 * dynamics.size
         directions: tuple[Direction, ...] = units(dynamics)[: self.size if columns is None else columns]
         self.columns = len(directions)
-        self.constraints = dynamics.constraints
-        self._lead = lead(dynamics) if self.constraints is not None and directions else None
+        self._lead = lead(dynamics) if dynamics.constraints is not None and directions else None
         augmented = Variational(dynamics, directions) if directions else dynamics
         self.run = METHODS[method].start(augmented, Setting(tolerance, step_limit=step_limit), scalar)
 
     def led(self, state: Any) -> Any:
         """The state on the constraints at t = 0."""
         return state if self._lead is None else self._lead(0.0, state)
-
-    def tangent(self, state: Any) -> Any | None:
-        """``Constraints.tangent`` at t = 0; None where there are no constraints."""
-        return None if self.constraints is None else self.constraints.tangent(0.0, np.asarray(state, dtype=float))
 
     def passage(self, state: Any, start: float, end: float, tangents: Any | None = None) -> tuple[Any, Any]:
         """(x(end), y(end)) from x(start) = ``state`` and y(start) = ``tangents``, the first unit vectors by default.
@@ -278,9 +273,9 @@ class Flow:
         self.run.restart(start, np.concatenate([np.asarray(state), np.asarray(tangents).T.reshape(-1)]))
         values = np.array(self.run.advance(end)) if end > start else np.array(self.run.state)
         state, columns = values[: self.size], values[self.size :].reshape(self.columns, self.size).T
-        if self._lead is not None and self.constraints is not None:
+        if self._lead is not None:
             state = self._lead(end, state)
-            basis = self.constraints.tangent(end, state)
+            basis = self.dynamics.tangent(end, state)
             columns = basis @ (basis.T @ columns)
         return state, columns
 

@@ -80,7 +80,7 @@ def _along(derived: Derived) -> AlongMotion:
     """Raises NoClosedForm where the dependent velocities are too long."""
     equations, system = derived.equations, derived.system.without_speeds
     tied = equations.constraints
-    if tied is None or tied.solved is None:
+    if tied.solved is None:
         raise NoClosedForm("the equations without multipliers have no closed form within the budget")
     programs = constrained_programs(system, derived.ring, [(name.constraint, name.component) for name in tied.names])
     return AlongMotion(derived.form, equations, programs)
@@ -165,7 +165,7 @@ def _example(derived: Derived, on_manifold: OnManifold, value: Any, what: str) -
 def _on_constraints(derived: Derived, result: ClaimResult, difference: Polynomial) -> ClaimResult:
     """What differs in general may be equal wherever the constraints hold."""
     tied = derived.equations.constraints
-    if tied is None or tied.solved is None:
+    if tied.solved is None:
         return result
     along = _along(derived)
     left = along.restricted(difference)

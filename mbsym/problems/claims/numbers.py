@@ -224,12 +224,11 @@ def _value(derived: Derived, symbols: Symbols, state: State, expression: Express
 
 
 def _accelerated(derived: Derived, state: State) -> State:
-    tied = derived.equations.constraints if derived.system.constraints else None
-    if tied is None:
+    if not derived.system.constraints:
         return accelerated(derived.system, state, derived.programs)
     from mbsym.problems.claims.constrained import accelerated_at  # most systems have no constraints
 
-    return accelerated_at(derived.system.without_speeds, derived.ring, tied, state)
+    return accelerated_at(derived.system.without_speeds, derived.ring, derived.equations.constraints, state)
 
 
 def _printed(number: str) -> tuple[int, fmpq]:

@@ -36,6 +36,7 @@ from mbsym.model.constraints import Rolling, is_holonomic, kind_name
 from mbsym.model.system import System, velocity_name
 from mbsym.problems.constraints.integrability import Field, by_program, integrability, is_exact_by_itself, undecided
 from mbsym.problems.constraints.result import Constraints, Demanded, Integrability, Redundant, Solved
+from mbsym.problems.knowledge import signs
 
 #: At so many points ranks are taken.
 POINTS = 3
@@ -284,7 +285,7 @@ class _Analysis:
             ),
             exact_points=points.exact,
             pivots=pivots,
-            solved=None if embedding is None else Solved.of(self.scene, embedding),
+            solved=_solved(self.scene, embedding),
             dependent_sets=self._dependent_sets(independent, m, points),
             dependent_positions=self._dependent_sets(
                 [i for i in independent if self.rows[i].name.holonomic],
@@ -425,6 +426,13 @@ class _Analysis:
         return Demanded(count, relations, satisfied, freedom)
 
 
+def _solved(scene: Scene, embedding: Embedding | None) -> Solved | None:
+    """None where the dependent velocities have no closed form within the budget."""
+    if embedding is None:
+        return None
+    return Solved.of(scene.ring, embedding, signs(scene).never_zero(embedding.determinant))
+
+
 def regular_at(jacobians: Sequence[Sequence[Sequence[Any]]]) -> Any:
     """Whether a square block is regular at one of the points."""
 
@@ -512,7 +520,7 @@ def constraints_in_speeds(
         coordinates=names,
         dependent=tuple(names[k] for k in pivots.columns),
         pivots=pivots,
-        solved=None if embedding is None else Solved.of(scene, embedding),
+        solved=_solved(scene, embedding),
         in_speeds=True,
     )
 

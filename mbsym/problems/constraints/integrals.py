@@ -83,13 +83,11 @@ class AlongMotion:
     def __init__(self, form: SpeedForm, equations: Equations, programs: ConstrainedPrograms | None = None) -> None:
         self.form, self.ring = form, form.ring
         self.tied, self.equations, self.programs = equations.constraints, equations, programs
-        self.solved = None if self.tied is None else self.tied.solved
+        self.solved = self.tied.solved
         self.velocities = {} if self.solved is None else dependent_velocities(form, self.solved)
         #: The independent rows: J, and J u + j.
-        self.rows: list[tuple[Sequence[Polynomial], Polynomial]] = []
-        if self.tied is not None:
-            jacobian, velocity = self.tied.jacobian.polynomials, self.tied.velocity
-            self.rows = [(jacobian[i], velocity[i].polynomial) for i in self.tied.independent]
+        jacobian, velocity = self.tied.jacobian.polynomials, self.tied.velocity
+        self.rows = [(jacobian[i], velocity[i].polynomial) for i in self.tied.independent]
 
     def restricted(self, x: Polynomial) -> Polynomial:
         """x on the velocities that the constraints allow."""
@@ -108,12 +106,11 @@ class AlongMotion:
     # --- in the ring ---
 
     @cached_property
-    def _matrices(self) -> Equations | Embedded:
+    def _matrices(self) -> Embedded:
         """Of the independent velocities.  Raises NoClosedForm where there are none, or they are too long."""
-        if self.tied is None:
-            return self.equations
         short = self.equations.embedded
-        if short is None or self.solved is None or short.terms > MOST_TERMS or len(short.free) > MOST_SPEEDS:
+        long = bool(self.rows) and short is not None and (short.terms > MOST_TERMS or len(short.free) > MOST_SPEEDS)
+        if short is None or self.solved is None or long:
             raise NoClosedForm("the equations without multipliers have no closed form within the budget")
         return short
 
@@ -130,8 +127,6 @@ class AlongMotion:
 
     def along_speeds(self, slopes: Sequence[Polynomial]) -> list[Polynomial]:
         """Y^T slopes: derivatives by u' (by u) as those by the independent ones."""
-        if self.tied is None:
-            return list(slopes)
         assert self.solved is not None
         basis = [basis_vector(self.ring, self.solved.embedding, place) for place in range(len(self.tied.free))]
         return [self.restricted(self.ring.dot(slopes, y)) for y in basis]
@@ -178,7 +173,6 @@ class AlongMotion:
     def _carried(self) -> list[tuple[OnManifold, Carrier, Carrier]]:
         """Those of the states where the equations have a solution, with their accelerations, and as series in time."""
         carried = []
-        assert self.tied is not None
         assert self.programs is not None
         with ctx.workprec(PRECISION):
             for on_manifold in self.states:
@@ -209,7 +203,7 @@ class AlongMotion:
 
 
 def integrals(
-    form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, programs: ConstrainedPrograms | None = None
+    form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, programs: ConstrainedPrograms
 ) -> tuple[Integral, ...]:
     """The energy, momenta, and products of unit vectors that are kept; of long equations those with multipliers."""
     motion = _Kept(form, equations, programs)
@@ -241,7 +235,7 @@ class _Kept(AlongMotion):
 
     def displacements(self, kinetic: Polynomial) -> Iterator[tuple[str, list[Polynomial]]]:
         """All constant xi with  J xi = 0  and  xi . (d/dt dT/du - E) = 0  on the velocities that constraints allow."""
-        if self.tied is None:
+        if not self.rows:  # problem 9 and symmetries look for these
             return
         form, ring = self.form, self.ring
         own = {velocity_name(name): name for name in form.coordinates}
@@ -276,7 +270,7 @@ class _Kept(AlongMotion):
             return Certainty.PROVED
         if integral.kind in (ENERGY, "cyclic momentum"):
             return None
-        if self.tied is None:
+        if not self.rows:
             return Certainty.PROVED if self.keeps(x) else None
         if self.equations.embedded is None:
             return None

@@ -13,32 +13,17 @@ Sources: G. A. Maggi, Principii di stereodinamica (1901); Neimark & Fufaev, chap
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.rates import velocity_name
-from mbsym.formulas.formula import Column, Matrix, Shown, column
+from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.constraints.embedding import projected
-from mbsym.mechanics.constraints.expansion import echelon
+from mbsym.mechanics.expansion import echelon
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved
-from mbsym.problems.equations import Equations
-
-
-@dataclass(frozen=True, repr=False)
-class Embedded(Shown):
-    """Y^T M Y (symmetric) and Y^T (f - M a0) in the independent velocities, which are those of ``free``."""
-
-    free: tuple[str, ...]
-    mass_matrix: Matrix
-    forcing: Column
-
-    @property
-    def terms(self) -> int:
-        """Terms of both."""
-        return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
+from mbsym.problems.equations import Embedded, Equations
 
 
 def embedded_equations(form: SpeedForm, equations: Equations, constraints: Constraints) -> Embedded:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.constraints.dependence import Dependent
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector
 from mbsym.mechanics.constraints.rows import RowName
-from mbsym.mechanics.kinematics import Scene
-from mbsym.problems.knowledge import signs
 
 
 @dataclass(frozen=True)
@@ -77,9 +76,8 @@ class Solved(Shown):
     embedding: Embedding
 
     @staticmethod
-    def of(scene: Scene, embedding: Embedding) -> Solved:
+    def of(ring: Ring, embedding: Embedding, regular_everywhere: bool) -> Solved:
         """With the rows of all velocities."""
-        ring = scene.ring
         n = len(embedding.dependent) + len(embedding.free)
         columns = [basis_vector(ring, embedding, place) for place in range(len(embedding.free))]
         shift, acceleration = [ring.zero] * n, [ring.zero] * n
@@ -90,7 +88,7 @@ class Solved(Shown):
             column(ring, shift),
             column(ring, acceleration),
             Formula(ring, embedding.determinant),
-            signs(scene).never_zero(embedding.determinant),
+            regular_everywhere,
             embedding,
         )
 
@@ -131,6 +129,30 @@ class Constraints(Shown):
     dependent_positions: tuple[Dependent, ...] = ()
     rank_beside: int | None = None
     kept_at_values: bool | None = None
+
+    @staticmethod
+    def none(ring: Ring, coordinates: tuple[str, ...], in_speeds: bool = False) -> Constraints:
+        """Those of a system without any, which leave q' = u: Y = 1."""
+        embedding = Embedding((), tuple(range(len(coordinates))), (), (), (), ring.one)
+        return Constraints(
+            names=(),
+            position=(),
+            velocity=(),
+            jacobian=Matrix.of(ring, []),
+            acceleration=(),
+            independent=(),
+            redundant=(),
+            position_rank=0,
+            demanded=Demanded(0),
+            coordinates=coordinates,
+            dependent=(),
+            integrability=None,
+            alone=(),
+            exact_points=True,
+            pivots=Pivots((), (), ()),
+            solved=Solved.of(ring, embedding, regular_everywhere=True),
+            in_speeds=in_speeds,
+        )
 
     @property
     def velocity_rank(self) -> int:

@@ -26,7 +26,7 @@ from mbsym.algebra.terms import univariate
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.formulas.formula import Shown
-from mbsym.mechanics.constraints.expansion import OnManifold
+from mbsym.mechanics.expansion import OnManifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.normal_forms.birkhoff import absolute

@@ -25,14 +25,13 @@ from mbsym.algebra.jet import Jet, Terms
 from mbsym.algebra.matrices import inverted
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.mechanics.constraints.expansion import OnManifold
 from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.expansion import OnManifold, given_motion, over_jets
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.motion import relations, unsteady
 from mbsym.mechanics.newton_euler import applied_forces
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.linearisation import quadratised
 
 
 class NotExpanded(Failure):
@@ -80,7 +79,7 @@ def expansion(
     coefficients outgrow the budget.
     """
     tied = None if manifold is None else manifold(order + 1)  # dq/dy loses an order
-    expanded: Scene[Jet] = quadratised(scene, whole, order) if tied is None else tied.scene
+    expanded: Scene[Jet] = over_jets(scene, given_motion(scene), whole, order) if tied is None else tied.scene
     images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
     names = scene.system.coordinates if tied is None else tied.coordinates
     ring, n = scene.ring, len(names)

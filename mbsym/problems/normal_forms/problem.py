@@ -18,7 +18,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.constraints.expansion import OnManifold
+from mbsym.mechanics.expansion import OnManifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.rest import rational_values
 from mbsym.problems.equilibrium import Equilibrium

@@ -70,9 +70,8 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     turning, damping, energies = [], [], []
     pushed: list[str] = []
     model = scene.system.linear
-    nonholonomic = linear.constrained is not None and not linear.constrained.holonomic
     # x' = A x has no energy, and of nonholonomic systems the matrices say nothing of it.
-    for at in () if nonholonomic or (model is not None and model.of_first_order) else parts:
+    for at in () if not linear.about.holonomic or (model is not None and model.of_first_order) else parts:
         names = tuple(linear.coordinates[i] for i in at)
         mass, damped, gyro, stiff, circulatory = (_block(matrix, at) for matrix in linear.matrices)
         if not circulatory.is_zero:
@@ -88,8 +87,7 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     if there is None and values is not None and few and linear.B is not None:
         there = enclosed_at(scene, linear, values)
     control, least, feedback, why = _controlled(scene, linear, signs, parts, there)
-    idle = () if linear.constrained is None else linear.constrained.idle
-    apart = tuple(name for name in idle if name not in linear.coordinates)
+    apart = tuple(name for name in linear.about.idle if name not in linear.coordinates)
     return Stabilisation(
         tuple(turning),
         tuple(damping),
@@ -99,7 +97,7 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
         why,
         tuple(energies),
         apart,
-        nonholonomic,
+        not linear.about.holonomic,
         tuple(pushed),
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq
 
@@ -33,7 +33,7 @@ from mbsym.problems.displacements import Basis, Displacements
 from mbsym.problems.displacements import basis as basis_of
 from mbsym.problems.dissipation import Balance, EnergyLaw
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
+from mbsym.problems.linearisation import Linearisation, Reduction, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.constant import algebraic_point, in_declared
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
@@ -43,9 +43,6 @@ from mbsym.problems.stability.requirements import Cell, Lift, Requirement, cells
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
 from mbsym.problems.stability.words import Because, Fact, Reason, Word, named
-
-if TYPE_CHECKING:
-    from mbsym.problems.reduction import Reduction
 
 #: Working precision where numbers are irrational, in bits.
 PRECISION = 256
@@ -244,10 +241,8 @@ def _spectrum(
         return from_characteristic(part.coordinates, point.characteristic, _balls(scene, [[scale]], values)[0][0])
     if point is not None:
         return None
-    about, model = linear.constrained, scene.system.linear
-    first_order = set() if about is None else set(about.following)
-    if model is not None and model.of_first_order:
-        first_order = set(part.coordinates)
+    model = scene.system.linear
+    first_order = {*(part.coordinates if model is not None and model.of_first_order else linear.about.following)}
     following = [i for i, name in enumerate(part.coordinates) if name in first_order]
     return from_matrices(part.coordinates, matrices_at(scene, linear, part.coordinates, values), following)
 
@@ -395,10 +390,17 @@ def prepared_parts(
     """Every subsystem, ready to be judged."""
     elimination = elimination_of(scene)
     spin = None if scene.system.constraints else free_spin(scene.system, still=True)
-    lagrangian = linear.constrained is None or linear.constrained.holonomic
+    about = linear.about
     prepared = tuple(
         _prepared(
-            scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium), equilibrium, lagrangian
+            scene,
+            part,
+            elimination,
+            signs,
+            balance,
+            _turned(scene, part, spin, equilibrium),
+            equilibrium,
+            about.holonomic,
         )
         for part in linear.subsystems
     )
@@ -413,12 +415,11 @@ def prepared_parts(
             )
             for part in prepared
         )
-    if linear.constrained is None or linear.constrained.holonomic:
-        leaf = 0 if linear.constrained is None else linear.constrained.leaf
-        return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
+    if about.holonomic:
+        return tuple(replace(part, system=replace(part.system, leaf=about.leaf)) for part in prepared)
     from mbsym.problems.constrained_balance import ConstrainedBalance  # most systems have no constraints
 
-    about, free = linear.constrained, equilibrium.satisfied
+    free = equilibrium.satisfied
     inside = {name for part in prepared for name in part.coordinates}
     uneven = isinstance(balance, ConstrainedBalance) and balance.uneven
     outside = uneven and not inside.issuperset(about.idle)
@@ -445,11 +446,12 @@ def _form(
     dimension is ``at_least`` that.
     """
     from mbsym.problems.constrained_balance import ConstrainedBalance
+    from mbsym.problems.reduction import dimension
 
     assert isinstance(balance, ConstrainedBalance)
     at = [about.about.index(name) for name in part.coordinates]
     idle = tuple(i for i, name in enumerate(part.coordinates) if name in about.idle)
-    family = max(at_least, about.dimension(at, signs) if free else 0)
+    family = max(at_least, dimension(about, at, signs) if free else 0)
     oscillating = balance.oscillating
     return NonholonomicForm(
         idle=idle,
@@ -771,10 +773,10 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any]
 
 def _solved_at(scene: Scene, linear: Linearisation, values: Mapping[str, Any] | None) -> Verdict | None:
     """ "undecided" where the given values are not shown to keep what was divided by when constraints were expanded."""
-    if values is None or linear.constrained is None:
+    if values is None:
         return None
     numbers = ring_numbers(scene.ring, values)
-    for assumed in linear.constrained.assumed:
+    for assumed in linear.about.assumed:
         if scene.ring.evaluate(assumed.polynomial, numbers).contains(0):
             return undecided(
                 Because.NO_EQUATIONS,

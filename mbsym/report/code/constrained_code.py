@@ -1,4 +1,4 @@
-"""What generated code holds of a constrained system: its rows, multipliers, the way back to the constraints.
+"""What generated code is made of: M, f and accelerations; of a constrained system its rows, multipliers, the way back.
 
     M q'' = f + J^T lambda,     J q'' = -gamma,     phi(q, t) = 0,     J q' + j = 0
 
@@ -22,8 +22,6 @@ from mbsym.mechanics.constraints.dependence import counted_anew
 from mbsym.mechanics.constraints.dynamics import Chosen, ConstrainedDynamics, Kept, constrained_dynamics
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.model.system import System
-from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.report.code.functions import Function, Functions
 
 if TYPE_CHECKING:
@@ -114,6 +112,9 @@ def _tied(analysis: Analysis) -> Tied:
 
 def _usual(system: System) -> Mapping[Kept, Fraction]:
     """What single rows are measured by at the values of the description; nothing where these are not known."""
+    from mbsym.numerics.dynamics import Dynamics  # few systems have constraints
+    from mbsym.numerics.scenario import Incomplete, scenario
+
     try:
         constraints = Dynamics(scenario(system)).constraints
         return {} if constraints is None else constraints.usual

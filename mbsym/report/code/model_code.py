@@ -23,9 +23,7 @@ from mbsym.algebra.program import Node, Program
 from mbsym.formulas.names import injective
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import (
-    ForwardDynamics,
     Programs,
-    forward_dynamics,
     generalized_energy,
     momenta,
     scene_without_accelerations,
@@ -42,14 +40,13 @@ from mbsym.problems.integrals import (
     identifiers,
     whole_momenta,
 )
-from mbsym.report.code import programs as open_trees
+from mbsym.report.code.constrained_code import Tied, tied_of
 from mbsym.report.code.functions import Function, Functions
 from mbsym.report.code.named_dynamics import NamedDynamics, named_dynamics
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
-    from mbsym.report.code.constrained_code import Tied
 
 #: Indices into an array: (), (i,) or (i, j).
 Place = tuple[int, ...]
@@ -68,7 +65,7 @@ class Solved:
     ``reactions`` are force and moment (6 nodes of that program) in each joint that the description names.
     """
 
-    forward: ForwardDynamics | ConstrainedDynamics | None
+    forward: ConstrainedDynamics | None
     no_forward: str
     slopes: tuple[tuple[Node, ...], ...] | None
     no_slopes: str
@@ -125,35 +122,18 @@ def solved(analysis: Analysis) -> Solved:
 
 def programs_of(analysis: Analysis) -> tuple[Programs | None, str]:
     """M, f and the energy as a program, of the open tree where there are constraints; or why there is none."""
-    if not analysis.system.constraints:
-        return open_trees.programs_of(analysis)
-    tied = _tied(analysis)
+    tied = tied_of(analysis)
     return (None, tied) if isinstance(tied, str) else (tied.code.tree, "")
 
 
-def _tied(analysis: Analysis) -> Tied | str:
-    from mbsym.report.code.constrained_code import tied_of  # few systems have constraints
-
-    return tied_of(analysis)
-
-
 def _solved(analysis: Analysis) -> Solved:
-    code, _ = programs_of(analysis)
-    if code is None:
+    tied = tied_of(analysis)
+    if isinstance(tied, str):
         return Solved(None, "", None, "")
-    forward: ForwardDynamics | ConstrainedDynamics | None
-    if analysis.system.constraints:
-        tied = _tied(analysis)
-        assert not isinstance(tied, str)
-        forward = tied.dynamics
-        if forward is None:
-            return Solved(None, tied.no_dynamics, None, "")
-    else:
-        try:
-            forward = forward_dynamics(analysis.system, analysis.ring)
-        except Failure as reason:
-            return Solved(None, str(reason), None, "")
-    needed, no_reactions = _reactions(analysis, forward)
+    forward = tied.dynamics
+    if forward is None:
+        return Solved(None, tied.no_dynamics, None, "")
+    needed, no_reactions = _reactions(analysis, tied, forward)
     names = [*analysis.system.coordinates, *analysis.system.velocities]
     estimate = forward.program.operations(forward.accelerations) * len(names)
     if estimate > LARGEST_JACOBIAN:
@@ -164,7 +144,7 @@ def _solved(analysis: Analysis) -> Solved:
 
 
 def _reactions(
-    analysis: Analysis, forward: ForwardDynamics | ConstrainedDynamics
+    analysis: Analysis, tied: Tied, forward: ConstrainedDynamics
 ) -> tuple[tuple[tuple[Node, ...], ...], str]:
     """R_0 + sum lambda_i R_i in each joint asked for, at the accelerations of the equations; or why there is none."""
     system = analysis.system
@@ -172,23 +152,16 @@ def _reactions(
         return (), ""
     from mbsym.mechanics.reactions import reactions  # few descriptions ask for them
 
-    rows: list[tuple[int, int]] = []
-    multipliers: tuple[Node, ...] = ()
-    if system.constraints:
-        tied = _tied(analysis)
-        assert not isinstance(tied, str)
-        assert tied.dynamics is not None
-        rows, multipliers = list(tied.kept), tied.dynamics.multipliers
     moved = {acceleration_name(q): x for q, x in zip(system.coordinates, forward.accelerations, strict=True)}
     try:
         scene = Scene(system, forward.program, {**forward.environment, **moved}, analysis.ring)
-        joint_reactions = reactions(scene, system.reactions, rows)
+        joint_reactions = reactions(scene, system.reactions, tied.kept)
     except Failure as reason:
         return (), str(reason)
     totals = []
     for reaction in joint_reactions:
         total = [*reaction.force, *reaction.moment]
-        for weight, (force, moment) in zip(multipliers, reaction.per_multiplier, strict=True):
+        for weight, (force, moment) in zip(forward.multipliers, reaction.per_multiplier, strict=True):
             total = [x + weight * y for x, y in zip(total, [*force, *moment], strict=True)]
         totals.append(tuple(total))
     return tuple(totals), ""
@@ -294,9 +267,10 @@ def _places(name: str, words: str, program: Program, rows: Sequence[Iterable[Nod
 def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """Everything that generated code computes (``named``: what robotics calls by name, too), and what it lacks, as
     sentences."""
-    code, no_code = programs_of(analysis)
-    if code is None:
-        return (), (f"There is no code for the equations of motion: {no_code}",)
+    tied = tied_of(analysis)
+    if isinstance(tied, str):
+        return (), (f"There is no code for the equations of motion: {tied}",)
+    code = tied.code.tree
     n, program, solution = len(analysis.system.coordinates), code.program, solved(analysis)
     pairs: dict[Place, Node] = {(i, j): code.mass_matrix[i][j] for i in range(n) for j in range(n)}
     forces: dict[Place, Node] = {(i,): node for i, node in enumerate(code.forcing)}
@@ -309,15 +283,15 @@ def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tu
         Part("generalized_energy", jacobi, (), program, {(): energies}),
     ]
     lacking = []
-    if analysis.system.constraints:
-        made.extend(_rows(analysis))
+    if tied.rows:
+        made.extend(_rows(tied, n))
     if solution.forward is None:
         lacking.append(f"There are no accelerations: {solution.no_forward}")
     else:
         own = solution.forward.program
         columns: dict[Place, Node] = {(i,): node for i, node in enumerate(solution.forward.accelerations)}
         words = "q'' = M^-1 f, by factorisation"
-        if analysis.system.constraints:
+        if tied.rows:
             words = "q'' with M q'' = f + J^T lambda and J q'' = -gamma, by factors of M and of J M^-1 J^T"
         made.append(Part("accelerations", words, (n,), own, _nonzero(own, columns)))
         if solution.slopes is None:
@@ -329,8 +303,8 @@ def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tu
             slopes |= {(i, n + i): own.one for i in range(n)}
             words = "d(q', q'')/d(q, q'), exact: by the chain rule"
             made.append(Part("jacobian", words, (2 * n, 2 * n), own, _nonzero(own, slopes)))
-        if analysis.system.constraints:
-            made.extend(_corrections(analysis))
+        if tied.rows:
+            made.extend(_corrections(tied, solution.forward))
         if solution.no_reactions:
             lacking.append(f"There are no reactions: {solution.no_reactions}")
         if solution.reactions:
@@ -345,7 +319,7 @@ def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tu
     made.extend(places(analysis))
     if named:
         dynamics = named_dynamics(analysis)
-        made.extend(_named_parts(dynamics, n, bool(analysis.system.constraints)))
+        made.extend(_named_parts(dynamics, n, bool(tied.rows)))
         lacking += filter(None, [dynamics.told_without])
     return tuple(made), tuple(lacking)
 
@@ -419,10 +393,8 @@ def _reaction_part(analysis: Analysis, solution: Solved) -> Part:
     return Part("reactions", words, (len(solution.reactions), 6), program, _nonzero(program, values))
 
 
-def _rows(analysis: Analysis) -> tuple[Part, ...]:
+def _rows(tied: Tied, n: int) -> tuple[Part, ...]:
     """phi, J q' + j, J, gamma."""
-    tied = _tied(analysis)
-    assert not isinstance(tied, str)
     program, m = tied.code.tree.program, len(tied.rows)
     partials: dict[Place, Node] = {(i, j): x for i, row in enumerate(tied.jacobian) for j, x in enumerate(row)}
 
@@ -436,17 +408,13 @@ def _rows(analysis: Analysis) -> tuple[Part, ...]:
         made.insert(0, Part("constraints", words, (tied.positions,), program, column(tied.phi)))
     return (
         *made,
-        Part("constraint_jacobian", "J", (m, len(analysis.system.coordinates)), program, _nonzero(program, partials)),
+        Part("constraint_jacobian", "J", (m, n), program, _nonzero(program, partials)),
         Part("constraint_acceleration", "gamma = J' q' + j'", (m,), program, column(tied.gamma)),
     )
 
 
-def _corrections(analysis: Analysis) -> tuple[Part, ...]:
+def _corrections(tied: Tied, dynamics: ConstrainedDynamics) -> tuple[Part, ...]:
     """lambda and the shortest ways back to the constraints."""
-    tied = _tied(analysis)
-    assert not isinstance(tied, str)
-    dynamics = tied.dynamics
-    assert dynamics is not None
     program, n = dynamics.program, len(dynamics.accelerations)
 
     def column(nodes: Sequence[Node]) -> dict[Place, Node]:

@@ -24,20 +24,21 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import Articulation, articulation
+from mbsym.mechanics.constraints.dynamics import constrained_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
-from mbsym.mechanics.programs import ForwardDynamics, forward_dynamics, scene_without_accelerations
+from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.inputs import force_names
 from mbsym.model.loads import NewtonianGravity, UniformGravity
 from mbsym.model.system import INERTIAL, System
+from mbsym.report.code.constrained_code import tied_of
 from mbsym.report.code.functions import Function, Functions
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
     from mbsym.analysis import Analysis
-    from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
 
 #: Poses and Jacobians of all frames take so many operations at most; of those beyond there are none.
 MOST_OPERATIONS = 30_000
@@ -160,17 +161,10 @@ def _unforced(system: System, program: Program) -> dict[str, Node]:
 def _forward(analysis: Analysis) -> Computed | None:
     system, ring = analysis.system, analysis.ring
     pushed = dict(zip(system.coordinates, force_names(system), strict=True))
-    dynamics: ForwardDynamics | ConstrainedDynamics
-    if system.constraints:
-        from mbsym.mechanics.constraints.dynamics import constrained_dynamics  # few systems have constraints
-        from mbsym.report.code.constrained_code import tied_of
-
-        tied = tied_of(analysis)
-        if isinstance(tied, str):
-            return None
-        dynamics = constrained_dynamics(system, ring, tied.chosen, pushed=pushed)
-    else:
-        dynamics = forward_dynamics(system, ring, pushed=pushed)
+    tied = tied_of(analysis)
+    if isinstance(tied, str):
+        return None
+    dynamics = constrained_dynamics(system, ring, tied.chosen, pushed=pushed)
     program = Program()
     nodes = _unforced(system, program) | {force: program.input(force) for force in pushed.values()}
     return Computed(program, tuple(dynamics.program.evaluate(list(dynamics.accelerations), nodes, program)))

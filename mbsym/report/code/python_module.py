@@ -127,8 +127,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     linear_names: tuple[str, ...] = ()
     following = False
     if linear is not None and linear.failure is None and linear.value.coordinates != system.coordinates:
-        linear_names, reduced = linear.value.coordinates, linear.value.constrained
-        following = bool(reduced and reduced.following)
+        linear_names, following = linear.value.coordinates, bool(linear.value.about.following)
     return rendered(
         "model.py.j2",
         {},

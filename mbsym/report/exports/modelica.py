@@ -13,6 +13,7 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.model.system import System, velocity_name
 from mbsym.model.units import ENERGY, LENGTH, TIME, Units
+from mbsym.report.code.constrained_code import tied_of
 from mbsym.report.code.identifiers import number, spelled
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Export, Language, Written, export
@@ -20,7 +21,6 @@ from mbsym.report.unit_text import base_unit, modelica
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.report.code.constrained_code import Tied
 
 _WORDS = """
     algorithm and annotation assert block break class connect connector constant constrainedby der discrete each else
@@ -88,20 +88,10 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     )
 
 
-def _tied(analysis: Analysis) -> Tied | None:
-    """The rows of constraints, where there are any."""
-    if not analysis.system.constraints:
-        return None
-    from mbsym.report.code.constrained_code import tied_of  # few systems have constraints
-
-    tied = tied_of(analysis)
-    return None if isinstance(tied, str) else tied
-
-
 def _labels(analysis: Analysis) -> tuple[str, ...]:
     """What the rows of constraints are called."""
-    tied = _tied(analysis)
-    return () if tied is None else tied.labels
+    tied = tied_of(analysis)
+    return () if isinstance(tied, str) else tied.labels
 
 
 def _at_the_start(analysis: Analysis, shown: Sequence[Written]) -> tuple[set[str], list[str]]:
@@ -111,8 +101,8 @@ def _at_the_start(analysis: Analysis, shown: Sequence[Written]) -> tuple[set[str
     """
     if not any(function.name == "multipliers" for function in shown):
         return set(), []
-    constraints, tied = analysis.constraints, _tied(analysis)
-    assert tied is not None
+    constraints, tied = analysis.constraints, tied_of(analysis)
+    assert not isinstance(tied, str)
     loose = {velocity_name(name) for name in constraints.dependent}
     independent = [k for k, i in enumerate(tied.rows, 1) if i in constraints.independent]
     closing = [f"constraint_velocity_{k}" for k in independent]

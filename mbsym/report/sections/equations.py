@@ -59,8 +59,8 @@ def data(equations: Equations, system: System, write: Write) -> doc.Equations:
         kane = cast("SpeedEquations", equations)
         own = {name: getattr(kane, name) for name in ("speeds", "needed", "supplied", "aside")}
         own["positions"] = zip(kane.positions, kane.rates, strict=True)
-    constraints = UNSET if tied is None else _constraints(tied, write)
-    return doc.Equations.from_result(equations, write, constraints=constraints, **own)
+    own |= {"constraints": _constraints(tied, write)} if tied.names else {"constraints": UNSET, "embedded": UNSET}
+    return doc.Equations.from_result(equations, write, **own)
 
 
 def _constraints(constraints: Constraints, write: Write) -> doc.Constraints:
@@ -78,9 +78,9 @@ def _constraints(constraints: Constraints, write: Write) -> doc.Constraints:
     )
 
 
-def reaction_data(reactions: Sequence[Reaction], tied: Constraints | None, write: Write) -> list[doc.Reaction]:
+def reaction_data(reactions: Sequence[Reaction], tied: Constraints, write: Write) -> list[doc.Reaction]:
     """What each joint transmits, for results.json."""
-    names = [] if tied is None else [tied.names[i].label for i in tied.independent]
+    names = [tied.names[i].label for i in tied.independent]
     return [
         doc.Reaction.from_result(
             item, write, per_multiplier=[(name, *both) for name, both in zip(names, item.per_multiplier, strict=True)]
@@ -125,7 +125,7 @@ def content(results: Results) -> Iterator[Block]:
         yield from _closed(motion_equations)
     else:
         yield from _program(results.analysis, equations)
-    if motion_equations is not None and motion_equations.constraints is not None:
+    if motion_equations is not None and motion_equations.constraints.names:
         yield from _of_constraints(motion_equations, motion_equations.constraints)
     if results.analysis.forms:
         from mbsym.report.sections import canonical
@@ -163,8 +163,7 @@ def balances(found: Equations, system: System) -> Iterator[tuple[Formula, tuple[
 def ties(equations: Equations) -> tuple[Relation, ...]:
     """What stands beside these: kinematic equations of speeds, and constraints."""
     kinematic = (Relation(Name(x, 1), "=", rate) for x, rate in getattr(equations, "kinematic", ()))
-    rows = () if equations.constraints is None else constraint_rows(equations.constraints)
-    return (*kinematic, *(Relation(value, "=", 0) for _, value in rows))
+    return (*kinematic, *(Relation(value, "=", 0) for _, value in constraint_rows(equations.constraints)))
 
 
 def are_short(values: Sequence[Formula]) -> bool:
@@ -175,7 +174,7 @@ def are_short(values: Sequence[Formula]) -> bool:
 def constraint_forces(equations: Equations, i: int) -> tuple[tuple[Formula, int], ...]:
     """(J^T lambda)_i: what is not zero before the multipliers of independent constraints, and their numbers from 1."""
     tied = equations.constraints
-    entries = () if tied is None else ((tied.jacobian.rows[k][i], k + 1) for k in tied.independent)
+    entries = ((tied.jacobian.rows[k][i], k + 1) for k in tied.independent)
     return tuple((x, k) for x, k in entries if not x.is_zero)
 
 
@@ -221,7 +220,7 @@ def _of_kane(kane: SpeedEquations) -> Iterator[Block]:
     text = (
         "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is "
         "what the loads supply."
-        if kane.constraints is None
+        if not kane.constraints.names
         else "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$, of the bodies "
         r"without constraints: what the motion needs is what the loads supply; constraints add $J^T \lambda$ "
         "on the right."
@@ -239,7 +238,7 @@ def _of_kane(kane: SpeedEquations) -> Iterator[Block]:
         yield from equalities(((Name(x, 1), rate) for x, rate in kane.kinematic_aside), "aside")
     text = (
         r"As $M \dot u = f$ with $u = ([[speeds]])$; $M$ is symmetric, entries that are not written are zero."
-        if kane.constraints is None
+        if not kane.constraints.names
         else r"$M$ and $f$ of these equations sorted by $\dot u$, $u = ([[speeds]])$; $M$ is symmetric, entries that "
         "are not written are zero."
     )

@@ -62,10 +62,10 @@ def content(results: Results) -> Iterator[Block]:
     yield from results.missing(5)
     if linearisation is None:
         return
-    if linearisation.constrained is not None:
+    if linearisation.about.ties:
         from mbsym.report.words.constraint_words import reduction_sentences
 
-        yield paragraph(joined(reduction_sentences(linearisation.constrained), " "))
+        yield paragraph(joined(reduction_sentences(linearisation.about), " "))
     if system.linear is not None and system.linear.of_first_order:
         yield paragraph(Said("As $\\dot x = A x$ with $M = 0$, $D = 1$ and $K + N = -A$."))
     yield paragraph(
@@ -110,7 +110,7 @@ def _first_order(results: Results, linearisation: Linearisation) -> Iterator[Blo
         if known["no_first_order"]:
             yield paragraph(Said("There is no first-order form"), ": ", worded(known["no_first_order"]), ".")
         return
-    if linearisation.constrained is not None:
+    if linearisation.about.ties:
         state = speeds(form.states)
         said = (
             say(

@@ -166,7 +166,7 @@ def _size(system: System, solved: dict[int, Any]) -> Fact:
     if system.constraints:
         count = len(system.constraints) if tied is None else tied.velocity_rank
         said += ["; ", say("constraints: [[count]]", count=str(count))]
-    if tied is not None:
+    if tied is not None and tied.names:
         freedom = len(tied.coordinates) - tied.velocity_rank
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
         if tied.demanded.satisfied is False:

@@ -116,8 +116,7 @@ def modes(analysis: Analysis) -> Modes:
 
 
 def _still(linear: Linearisation) -> tuple[str, ...]:
-    about = linear.constrained
-    return () if about is None or about.holonomic else about.dependent_coordinates
+    return () if linear.about.holonomic else linear.about.dependent_coordinates
 
 
 def _floats(rows: Sequence[Sequence[Any]]) -> Any:

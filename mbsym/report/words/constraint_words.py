@@ -8,8 +8,8 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import worded
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.problems.constraints.result import Constraints, Demanded, Integrability
+from mbsym.problems.linearisation import Reduction
 from mbsym.problems.reactions import Reaction
-from mbsym.problems.reduction import Reduction
 from mbsym.report.content import Listed, Name, Phrase, Relation, Said, Symbol, joined, named, say, speeds
 
 

@@ -61,7 +61,7 @@ class Linearisation(Matrices, frozen=True, kw_only=True):
     constraints x are the coordinates of the independent speeds
     """
 
-    reduction: Annotated[Reduction | UnsetType, From("constrained")] = UNSET
+    reduction: Annotated[Reduction | UnsetType, From("about", by=lambda about: about if about.ties else None)] = UNSET
     B: Annotated[
         list[list[Formula]] | UnsetType,
         "input matrix: a column for each of the inputs, where there are any",

@@ -1,4 +1,4 @@
-"""A constrained system near its unperturbed motion, to first order; the dependent quantities are not solved for.
+"""A system near its unperturbed motion, to first order; what constraints make dependent is not solved for.
 
 With the rows f(q, t) = 0 and J q' + j = 0 and deviations x, nu, alpha of q, q', q'' from the motion (n each),
 
@@ -221,8 +221,8 @@ def _factors(ring: Ring, signs: Signs, assumed: Iterable[Polynomial]) -> tuple[P
     return tuple(factors)
 
 
-def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:
-    """The system over first-order jets about a motion; deviations x_i, nu_i, alpha_i are i, n + i, 2n + i.
+def over_jets(scene: Scene, base: Base, whole: System | None = None, order: int = 1) -> Scene[Jet]:
+    """The system over jets of ``order`` about a motion; deviations x_i, nu_i, alpha_i are i, n + i, 2n + i.
 
     That of input k of the ``whole`` is 3n + k.
     """
@@ -238,7 +238,7 @@ def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:
         at_rest | {system_input.name: system_input.held for system_input in system.inputs},
         numbers,
         lowered,
-        order=1,
+        order,
     )
     environment = {name: Jet(value) for name, value in scene.environment.items()}
     for i, name in enumerate(names):
@@ -250,29 +250,46 @@ def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:
     return Scene(system, jets, environment, ring)
 
 
+def given_motion(scene: Scene) -> Base:
+    """The motion as the description gives it (``scene`` over the ring)."""
+    derivatives, names = motion_derivatives(scene.system), scene.system.coordinates
+    rates, accelerations = (tuple(scene.lower(derivatives[name][k]) for name in names) for k in (0, 1))
+    return _turning(scene, Base((), frozenset(), rates, accelerations, {}), _moved(scene, rates))
+
+
+def _moved(scene: Scene, rates: Iterable[Polynomial]) -> frozenset[str]:
+    """The coordinates with these rates that turn steadily: those that no function of time leads, relations used."""
+    values, derivatives, images = motion_values(scene.system), motion_derivatives(scene.system), relations(scene)
+    return frozenset(
+        name
+        for name, rate in zip(scene.system.coordinates, rates, strict=True)
+        if derivatives[name][0] == values[name][1] and not scene.ring.substitute(rate, images).is_zero()
+    )
+
+
+def _turning(scene: Scene, base: Base, names: Iterable[str]) -> Base:
+    """The same motion, in which these turn besides: their places are their own names."""
+    values, turning = motion_values(scene.system), base.turning | {*names}
+    places = (
+        scene.environment[name] if name in turning else scene.lower(values[name][0])
+        for name in scene.system.coordinates
+    )
+    return replace(base, values=tuple(places), turning=turning)
+
+
 def _completed(scene: Scene, signs: Signs) -> Base:
     """The motion with the rates and accelerations that follow from the constraints where none are given."""
-    system, ring = scene.system, scene.ring
-    names, values = system.coordinates, motion_values(system)
-    specified = {entry.coordinate for entry in system.motion}
-    open_ones = [i for i, name in enumerate(names) if name not in specified]
-    derivatives = motion_derivatives(system)
-    rates, accelerations = ([scene.lower(derivatives[name][k]) for name in names] for k in (0, 1))
-    images = relations(scene)
-    led = {name for name in names if derivatives[name][0] != values[name][1]}  # by free functions of time
-    turning = {
-        name for name, rate in zip(names, rates, strict=True) if not ring.substitute(rate, images).is_zero()
-    } - led
-    related = _related(scene, rates)
+    specified = {entry.coordinate for entry in scene.system.motion}
+    open_ones = [i for i, name in enumerate(scene.system.coordinates) if name not in specified]
+    still = given_motion(scene)
+    still = replace(still, related=_related(scene, still.rates))
     for _ in range(MOST_ROUNDS):
-        places = tuple(scene.environment[name] if name in turning else scene.lower(values[name][0]) for name in names)
-        still = Base(places, frozenset(turning), tuple(rates), tuple(accelerations), related)
         moving = replace(still, rates=_followed(scene, signs, still, still.rates, open_ones, "g"))
-        moving_names = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()} - led
+        turning = _moved(scene, moving.rates)
         related = _related(scene, moving.rates)
-        if moving_names <= turning and related == still.related:
+        if turning <= still.turning and related == still.related:
             return replace(moving, accelerations=_followed(scene, signs, moving, still.accelerations, open_ones, "h"))
-        turning |= moving_names
+        still = _turning(scene, replace(still, related=related), turning)
     raise NoClosedForm("the rates of the motion do not follow from the constraints")
 
 
@@ -458,10 +475,10 @@ def _without(ring: Ring, row: Row, column: Column, pivot: Row) -> Row:
     return left
 
 
-# The equations of a constrained system, projected on the motions that the constraints allow, to first order.
+# The equations, projected on the motions that the constraints allow, to first order.
 #
 # With the residuals r = M q'' - f of the open tree over jets (their constant part r_0 is what the constraint forces
-# supply on the motion) and Y of ``expansion.py``,
+# supply on the motion) and Y,
 #
 #     Y^T r = Y_0^T r_0 + (Y_0^T r_x + Y_x^T r_0) x + Y_0^T r_nu nu + Y_0^T r_alpha alpha
 #
