@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -12,7 +11,18 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation, add, multiply, names, walk
+from mbsym.expressions.tree import (
+    ZERO,
+    Call,
+    Expression,
+    Name,
+    Number,
+    add,
+    multiply,
+    names,
+    rewritten,
+    walk,
+)
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
@@ -54,19 +64,15 @@ class Symbols:
 
     def opened(self, expression: Expression) -> Expression:
         """The expression with abbreviations under sin, cos and tan replaced by the angles that they are."""
-        match expression:
-            case Call("sin" | "cos" | "tan" as function, argument):
-                form = linear_form(argument)
-                opened = None if form is None else self._opened_form(form)
-                return Call(function, self.opened(argument) if opened is None else _written(opened))
-            case Call():
-                more = tuple(map(self.opened, expression.more))
-                return replace(expression, argument=self.opened(expression.argument), more=more)
-            case Negative(operand):
-                return Negative(self.opened(operand))
-            case Operation(operator, left, right):
-                return Operation(operator, self.opened(left), self.opened(right))
-        return expression
+
+        def change(part: Expression) -> Expression | None:
+            if not (isinstance(part, Call) and part.function in ("sin", "cos", "tan")):
+                return None
+            form = linear_form(part.argument)
+            opened = None if form is None else self._opened_form(form)
+            return Call(part.function, self.opened(part.argument) if opened is None else _written(opened))
+
+        return rewritten(expression, change)
 
     def arguments(self, claim: Claim) -> Iterator[Expression]:
         """Every angle under sin, cos and tan in a claim and in the abbreviations that it is written in."""
