@@ -49,15 +49,7 @@ class Carrier:
             return x(*(self._generator(k) if used[k] > 0 else algebra.zero for k in range(len(used))))
         if isinstance(algebra, BallsAtRationals):
             return self._enclosed(x, algebra)
-        self.ring.spend(20 * len(x))
-        total = algebra.zero
-        for monomial, coefficient in x.terms():
-            term = algebra.number(rationals.fraction(coefficient))
-            for index, exponent in enumerate(monomial):
-                if exponent:
-                    term = algebra.times(term, self._power(index, int(exponent)))
-            total = total + term
-        return algebra.reduce(total)
+        return self.termwise([(c, [(k, int(n)) for k, n in enumerate(monomial) if n]) for monomial, c in x.terms()])
 
     def termwise(self, terms: Sequence[tuple[fmpq, Sequence[tuple[int, int]]]]) -> Scalar:
         """The sum of terms given as a coefficient and (generator, exponent) pairs."""

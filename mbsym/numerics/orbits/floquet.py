@@ -418,7 +418,8 @@ def _harmonics(code: Code, node: Node) -> _Harmonics | None:
 
 def series(code: Code, time: arb_series) -> list[Any]:
     """The outputs as power series of balls about ``time``, to as many terms as ``ctx.cap`` allows."""
-    return code.program.evaluate(code.outputs, {"t": time}, _PowerSeries({"t": time}))
+    inputs: dict[str, Any] = {"t": time}
+    return code.program.evaluate(code.outputs, inputs, _PowerSeries(inputs))
 
 
 class _PowerSeries(Balls):
