@@ -7,14 +7,17 @@ how to differentiate itself; it knows no mechanics and no polynomials.  ``mbsym.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import TypeVar
 
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import is_velocity
 from mbsym.expressions.table import Curve, Table, curve_name
+
+T = TypeVar("T")
 
 #: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.
 SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
@@ -141,6 +144,17 @@ def walk(expression: Expression) -> Iterator[Expression]:
 def names(expression: Expression) -> set[str]:
     """The names that occur, ``pi`` excepted."""
     return {node.name for node in walk(expression) if isinstance(node, Name)} - set(CONSTANTS)
+
+
+def reached(needs: Mapping[T, Iterable[T]], start: Iterable[T]) -> set[T]:
+    """All that something depends on, directly or through others, and what it starts from."""
+    known = set(start)
+    pending = list(known)
+    while pending:
+        new = set(needs.get(pending.pop(), ())) - known
+        known |= new
+        pending += new
+    return known
 
 
 def curve_of(table: Table, order: int = 0) -> Curve:

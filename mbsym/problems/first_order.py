@@ -30,10 +30,9 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, solved
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import divide, number, substitute
+from mbsym.expressions.tree import divide, number, reached, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, Shown, column
-from mbsym.mechanics.constraints.expansion import reached
 from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.motion import motion_values, turning, unperturbed_with, unsteady

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
-from mbsym.expressions.tree import ZERO, Expression, names
+from mbsym.expressions.tree import ZERO, Expression, names, reached
 from mbsym.model.system import (
     Assumption,
     InitialValue,
@@ -46,22 +46,9 @@ def read_relations(node: Node | None, reading: Reading) -> tuple[Relation, ...]:
 def _check_circles(relations: list[Relation], reading: Reading) -> None:
     needs = {relation.name: names(relation.value) for relation in relations}
     for relation in relations:
-        if _reaches(relation.name, needs):
+        if relation.name in reached(needs, needs[relation.name]):
             message = Message("'[[name]]' depends on itself through the relations", name=relation.name)
             reading.error("relation-cycle", message, relation.span)
-
-
-def _reaches(name: str, needs: dict[str, set[str]]) -> bool:
-    seen: set[str] = set()
-    pending = [name]
-    while pending:
-        for needed in needs.get(pending.pop(), set()):
-            if needed == name:
-                return True
-            if needed not in seen:
-                seen.add(needed)
-                pending.append(needed)
-    return False
 
 
 def read_assumptions(node: Node | None, reading: Reading) -> tuple[Assumption, ...]:

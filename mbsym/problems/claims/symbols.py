@@ -11,18 +11,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import (
-    ZERO,
-    Call,
-    Expression,
-    Name,
-    Number,
-    add,
-    multiply,
-    names,
-    rewritten,
-    walk,
-)
+from mbsym.expressions.tree import ZERO, Call, Expression, Name, Number, add, multiply, names, reached, rewritten, walk
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
@@ -85,14 +74,8 @@ class Symbols:
 
     def occurring(self, expressions: Iterable[Expression]) -> set[str]:
         """The names that occur, those in abbreviations included."""
-        occurring_names: set[str] = set()
-        pending = [name for expression in expressions for name in names(expression)]
-        while pending:
-            name = pending.pop()
-            if name not in occurring_names:
-                occurring_names.add(name)
-                pending += names(self.values[name]) if name in self.values else ()
-        return occurring_names
+        needs = {name: names(value) for name, value in self.values.items()}
+        return reached(needs, (name for expression in expressions for name in names(expression)))
 
     def lowering(self, algebra: Any, environment: Mapping[str, Any], required: set[str]) -> Lowering:
         """Values for expressions, in an algebra, with those of the wanted abbreviations."""
