@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
@@ -136,17 +136,23 @@ def _is_coordinate(key: Scalar, what: str, node: Node | None, reading: Reading, 
 
 def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:
     """Symbols in order: each may use parameters and the symbols above it."""
-    notation = []
     allowed = Allowed("a notation", ("parameter", "notation"))
-    entries = [] if node is None else list(reading.entries(node, "'notation'"))
+    declared = read_in_order(node, "'notation'", allowed, reading, lambda _: "notation")
+    return tuple(Notation(*item) for item in declared)
+
+
+def read_in_order(
+    node: Node | None, what: str, allowed: Allowed, reading: Reading, kind_of: Callable[[Expression], str]
+) -> Iterator[tuple[str, Expression, Span]]:
+    """Name, value and place of entries, each of which may use those above it."""
+    entries = [] if node is None else list(reading.entries(node, what))
     reading.scope.later = {entry.key.text for entry in entries}
     for entry in entries:
         errors = reading.errors
         value = reading.expression(entry.value, allowed)
-        if reading.scope.declare(entry.key.text, "notation", entry.key.span) and reading.errors == errors:
-            notation.append(Notation(entry.key.text, value, entry.key.span))
+        if reading.scope.declare(entry.key.text, kind_of(value), entry.key.span) and reading.errors == errors:
+            yield entry.key.text, value, entry.key.span
         reading.scope.later.discard(entry.key.text)
-    return tuple(notation)
 
 
 #: Variables that a description declares besides its coordinates.

@@ -263,11 +263,16 @@ def matrices_at(
 
     What vanishes identically is exactly 0.
     """
+    return [_balls(scene, block, values) for block in blocks_of(scene, linear, coordinates, basis)]
+
+
+def blocks_of(
+    scene: Scene, linear: Linearisation, coordinates: Sequence[str], basis: Basis | None = None
+) -> list[list[list[Polynomial]]]:
+    """The blocks of M, D, G, K, N that belong to some coordinates, or to a basis."""
     at = [linear.coordinates.index(name) for name in coordinates]
     blocks = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in linear.matrices]
-    if basis is not None:
-        blocks = [basis.congruent(scene.ring, block) for block in blocks]
-    return [_balls(scene, block, values) for block in blocks]
+    return blocks if basis is None else [basis.congruent(scene.ring, block) for block in blocks]
 
 
 def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
