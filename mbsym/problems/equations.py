@@ -55,6 +55,8 @@ class Equations(Shown):
     outgrow the budget.
     """
 
+    counted = ("mass_matrix", "forcing")
+
     mass_matrix: Matrix
     forcing: Column
     generalized_force: Column
@@ -81,11 +83,6 @@ class Equations(Shown):
     def equalities(self, names: Sequence[str]) -> Column:
         """The same of all rows."""
         return tuple(self.equality(i, names) for i, _ in enumerate(self.forcing))
-
-    @property
-    def terms(self) -> int:
-        """Terms of M and f."""
-        return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
 
 
 def equations(scene: Scene, energy: Energy) -> Equations:

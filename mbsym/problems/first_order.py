@@ -55,15 +55,13 @@ class FirstOrder(Shown):
     quaternions among them.
     """
 
+    counted = ("A",)
+
     names: tuple[str, ...]
     values: Column
     A: Matrix
     relations: int
     norms: int
-
-    @property
-    def terms(self) -> int:
-        return self.A.terms
 
 
 def first_order(

@@ -110,6 +110,8 @@ class Linearisation(Shown):
     ``coordinates`` are the independent ones, and ``constrained`` says what became of the others.
     """
 
+    counted = ("matrices", "B")
+
     coordinates: tuple[str, ...]
     M: Matrix
     D: Matrix
@@ -127,11 +129,6 @@ class Linearisation(Shown):
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
         return self.M, self.D, self.G, self.K, self.N
-
-    @property
-    def terms(self) -> int:
-        """Terms of the matrices."""
-        return sum(matrix.terms for matrix in self.matrices) + (0 if self.B is None else self.B.terms)
 
     @property
     def equalities(self) -> Column:

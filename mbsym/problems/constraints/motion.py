@@ -31,14 +31,11 @@ from mbsym.problems.equations import Equations
 class Embedded(Shown):
     """Y^T M Y (symmetric) and Y^T (f - M a0) in the independent velocities, which are those of ``free``."""
 
+    counted = ("mass_matrix", "forcing")
+
     free: tuple[str, ...]
     mass_matrix: Matrix
     forcing: Column
-
-    @property
-    def terms(self) -> int:
-        """Terms of both."""
-        return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
 
 
 def embedded_equations(form: SpeedForm, equations: Equations, constraints: Constraints) -> Embedded:

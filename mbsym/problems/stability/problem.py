@@ -60,6 +60,8 @@ class SubsystemStability(Shown):
     ``system`` with what is ``known`` is what was judged.
     """
 
+    counted = ("characteristic",)
+
     coordinates: tuple[str, ...]
     matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
     factor: Formula
@@ -152,6 +154,8 @@ class Stability(Shown):
     where terms of higher order decide it.  ``enclosed``: there enclosures decide, no exact numbers.
     """
 
+    counted = ("subsystems",)
+
     subsystems: tuple[SubsystemStability, ...]
     verdict: Verdict
     numerical: Verdict | None
@@ -159,11 +163,6 @@ class Stability(Shown):
     presumed: Column = ()
     before_higher_order: Verdict | None = None
     enclosed: bool = False
-
-    @property
-    def terms(self) -> int:
-        """Terms of the characteristic polynomials."""
-        return sum(x.terms for part in self.subsystems for x in part.characteristic)
 
 
 def because(found: Stability, code: Because, *data: object) -> Stability:
