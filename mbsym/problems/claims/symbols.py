@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, Number, add, multiply, names, reached, rewritten, walk
@@ -24,11 +25,10 @@ class Symbols:
     """
 
     @staticmethod
+    @remembered  # they are asked for again and again, claim by claim
     def of(owner: Any) -> Symbols:
         """Those of ``owner.system``, made once for its owner."""
-        if owner not in _REMEMBERED:
-            _REMEMBERED[owner] = Symbols(owner.system)
-        return _REMEMBERED[owner]
+        return Symbols(owner.system)
 
     def __init__(self, system: System) -> None:
         self.system = system
@@ -111,10 +111,6 @@ class Symbols:
         # No abbreviation holds the variable: it is no name outside its claim.
         known = {name: lower(Name(name)) for name in names(opened) if name != claim.variable}
         return Lowering(scene.ring, known | {claim.variable: scene.ring.generator("time", "t")})(opened)
-
-
-#: Whose abbreviations are asked for again and again, claim by claim.
-_REMEMBERED: WeakKeyDictionary[Any, Symbols] = WeakKeyDictionary()
 
 
 class _Values(dict[str, Any]):
