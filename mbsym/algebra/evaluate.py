@@ -130,3 +130,11 @@ class Carrier:
         if name not in self.environment:
             raise NoValue(name)
         return self.environment[name]
+
+
+def at_rationals(ring: Ring, values: Mapping[str, Any]) -> Carrier:
+    """Evaluates exactly where the values are fractions; others have no value there."""
+    algebra = Rationals({}, {})
+    return Carrier(
+        ring, algebra, {name: algebra.number(value) for name, value in values.items() if isinstance(value, Fraction)}
+    )

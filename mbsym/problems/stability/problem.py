@@ -14,7 +14,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
-from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.evaluate import Carrier, at_rationals
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.matrices import added
@@ -736,11 +736,8 @@ def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] 
 
 def _value_of(scene: Scene, x: Polynomial, values: Mapping[str, Any]) -> Any:
     """A formula in parameters, exactly where it is rational, else enclosed.  Raises Failure where one has no value."""
-    carried = Rationals({}, {})
-    exact = {name: carried.number(value) for name, value in values.items() if isinstance(value, Fraction)}
     try:
-        exact_value = Carrier(scene.ring, carried, exact)(x)
-        return rationals.fraction(exact_value)
+        return rationals.fraction(at_rationals(scene.ring, values)(x))
     except Failure:
         balls = {"pi": arb.pi()} | {name: arb(_number(value)) for name, value in values.items()}
         return Carrier(scene.ring, Balls(balls), balls)(x)
@@ -793,9 +790,7 @@ def _point(
     scene: Scene, ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], values: Mapping[str, Any]
 ) -> dict[int, Fraction] | None:
     """Exact values of the generators that occur in the matrices; None if one of them is irrational."""
-    numbers = Rationals({}, {})
-    environment = {name: numbers.number(value) for name, value in values.items() if isinstance(value, Fraction)}
-    carry = Carrier(scene.ring, numbers, environment)
+    carry = at_rationals(scene.ring, values)
     used = occurring(x for matrix in rows for row in matrix for x in row)
     try:
         return {index: rationals.fraction(carry(in_declared(scene, ring, index)[1])) for index in used}
