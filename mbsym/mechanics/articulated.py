@@ -28,7 +28,7 @@ from typing import Generic
 from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, tensor_of, zero_tensor
-from mbsym.mechanics.articulation import Articulation, Frame, MassProperties, turned
+from mbsym.mechanics.articulation import Articulation, Frame, MassProperties, turned_symmetric
 from mbsym.mechanics.falling import falling_scene, overrides
 from mbsym.mechanics.frames import Turn
 from mbsym.mechanics.loads.kinds import actions_beyond_fields, base_acceleration
@@ -430,8 +430,34 @@ def _turned(algebra: Algebra[S], x: _Inertia[S], frame: Frame[S]) -> _Inertia[S]
         before = frame.offset.frame
         return _Inertia(x.force.in_parallel(before), x.mixed.in_parallel(before), x.moment.in_parallel(before))
     return _Inertia(
-        turned(algebra, turn, x.force), turned(algebra, turn, x.mixed, symmetric=False), turned(algebra, turn, x.moment)
+        turned_symmetric(algebra, turn, x.force),
+        _turned_general(algebra, turn, x.mixed),
+        turned_symmetric(algebra, turn, x.moment),
     )
+
+
+def _turned_general(algebra: Algebra[S], turn: Turn[S], matrix: Tensor[S]) -> Tensor[S]:
+    """C^T B C for a general B in at most 23 operations.
+
+    In the plane of the turn, with entries p, q; r, s and  u = sin (p - s) + cos (q + r):
+    p - u sin, cos u - r;  cos u - q, s + u sin.
+    """
+    a = turn.axis - 1
+    i, j = (a + 1) % 3, (a + 2) % 3
+    times = algebra.times
+    p, q, r, s = matrix[i][i], matrix[i][j], matrix[j][i], matrix[j][j]
+    u = algebra.dot((turn.sine, turn.cosine), (p - s, q + r))
+    across, mixed = times(turn.sine, u), times(turn.cosine, u)
+    rows = [list(row) for row in matrix]
+    rows[i][i], rows[i][j], rows[j][i], rows[j][j] = p - across, mixed - r, mixed - q, s + across
+    column, row = [algebra.zero] * 3, [algebra.zero] * 3
+    for k in (i, j):
+        column[k], row[k] = matrix[k][a], matrix[a][k]
+    swung = turn.back(Vector(algebra, (column[0], column[1], column[2]), turn.frame))
+    swept = turn.back(Vector(algebra, (row[0], row[1], row[2]), turn.frame))
+    for k in (i, j):
+        rows[k][a], rows[a][k] = swung[k], swept[k]
+    return tensor_of(algebra, rows, turn.source)
 
 
 def _shifted(algebra: Algebra[S], x: _Inertia[S], r: Vector[S]) -> _Inertia[S]:

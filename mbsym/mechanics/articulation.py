@@ -236,31 +236,29 @@ def turned_back(algebra: Algebra[S], x: MassProperties[S], frame: Frame[S]) -> M
     moment = frame.back(x.first_moment)
     if frame.turn is None:
         return MassProperties(x.mass, moment, x.tensor.in_parallel(moment.frame))
-    return MassProperties(x.mass, moment, turned(algebra, frame.turn, x.tensor))
+    return MassProperties(x.mass, moment, turned_symmetric(algebra, frame.turn, x.tensor))
 
 
-def turned(algebra: Algebra[S], turn: Turn[S], matrix: Tensor[S], symmetric: bool = True) -> Tensor[S]:
-    """C^T B C, with C = C_a(x), in at most 23 operations; of a ``symmetric`` B in 16.
+def turned_symmetric(algebra: Algebra[S], turn: Turn[S], matrix: Tensor[S]) -> Tensor[S]:
+    """C^T S C for a symmetric S, with C = C_a(x), in at most 16 operations.
 
-    In the plane of the turn, with entries p, q; r, s and  u = sin (p - s) + cos (q + r):
-    p - u sin, cos u - r;  cos u - q, s + u sin.
+    In the plane of the turn, with the entries p, q, s (q off the diagonal) and  u = sin (p - s) + 2 cos q:
+    p - u sin,  cos u - q,  s + u sin.
     """
     a = turn.axis - 1
     i, j = (a + 1) % 3, (a + 2) % 3
-    times = algebra.times
-    p, q, r, s = matrix[i][i], matrix[i][j], matrix[j][i], matrix[j][j]
-    u = algebra.dot((turn.sine, turn.cosine), (p - s, q + r))
-    across, mixed = times(turn.sine, u), times(turn.cosine, u)
+    sine, cosine, times = turn.sine, turn.cosine, algebra.times
     rows = [list(row) for row in matrix]
-    rows[i][i], rows[i][j], rows[j][i], rows[j][j] = p - across, mixed - r, mixed - q, s + across
-    column, row = [algebra.zero] * 3, [algebra.zero] * 3
+    p, q, s = matrix[i][i], matrix[i][j], matrix[j][j]
+    u = algebra.dot((sine, cosine), (p - s, q + q))
+    across = times(sine, u)
+    rows[i][i], rows[j][j] = p - across, s + across
+    rows[i][j] = rows[j][i] = times(cosine, u) - q
+    column = [algebra.zero] * 3
+    column[i], column[j] = matrix[i][a], matrix[j][a]
+    swung = turn.back(Vector(algebra, (column[0], column[1], column[2]), turn.frame))
     for k in (i, j):
-        column[k], row[k] = matrix[k][a], matrix[a][k]
-    swung = swept = turn.back(Vector(algebra, (column[0], column[1], column[2]), turn.frame))
-    if not symmetric:
-        swept = turn.back(Vector(algebra, (row[0], row[1], row[2]), turn.frame))
-    for k in (i, j):
-        rows[k][a], rows[a][k] = swung[k], swept[k]
+        rows[k][a] = rows[a][k] = swung[k]
     return tensor_of(algebra, rows, turn.source)
 
 

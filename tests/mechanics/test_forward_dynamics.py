@@ -328,7 +328,7 @@ def test_operations_of_parameters_alone_are_free() -> None:
 
 MISTAKES = [
     ("mechanics.factorisation:_Composite._climb", " + frame.offset.cross(force)", ""),
-    ("mechanics.articulation:turned", "p - across", "p + across"),
+    ("mechanics.articulation:turned_symmetric", "p - across", "p + across"),
     ("mechanics.articulation:shifted", "- mixed", "+ mixed"),
     ("mechanics.articulation:shifted", "twice = h + moved", "twice = h + h"),
     ("mechanics.articulation:split", "algebra.zero, Vector", "own.mass, Vector"),
@@ -350,7 +350,7 @@ def test_mistakes_in_the_lean_recursions_fail_the_self_check(
 
 ARTICULATED_MISTAKES = [
     ("mechanics.articulated:_shifted", "new[j][j]", "old[j][j]"),
-    ("mechanics.articulation:turned", "mixed - r", "mixed + r"),
+    ("mechanics.articulated:_turned_general", "mixed - r", "mixed + r"),
     ("mechanics.articulated:_less", "- mul(u[i], v[j])", "+ mul(u[i], v[j])"),
     ("mechanics.articulated:_Articulated._inwards", " + frame.offset.cross(force)", ""),
     ("mechanics.articulated:_Articulated._outwards", " + angular.cross(frame.offset)", ""),
