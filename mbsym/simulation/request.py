@@ -10,16 +10,14 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from mbsym.expressions.message import Message
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints
-from mbsym.expressions.tree import Expression, names
+from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.models import Model
 from mbsym.numerics.streamed import SHOWN
 from mbsym.simulation.watching import Watch
-from mbsym.source.laws import expressions_of
 
 #: The local error unless asked for otherwise.
 TOLERANCE = {"float64": 1e-10, "float32": 1e-5, "extended": 1e-14}
@@ -89,15 +87,27 @@ def read_values(system: System, values: Mapping[str, Expression | Fraction | flo
     a declared variable (its initial value).  Raises ValueError with everything that is wrong.
     """
     known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
-
-    def read(_: str, value: str, complaints: Complaints) -> Expression | None:
-        expression = parse_expression(value, complaints)
-        for name in sorted(names(expression) - {*system.parameter_names, "pi"}) if expression is not None else ():
-            complaints.error("unknown-name", Message("unknown name [[name]]", name=name), None)
-        return expression
-
+    expressions: dict[str, Expression] = {}
     wrong = [f"there is nothing called {name} to set" for name in values if name not in known]
-    return expressions_of(values, read, wrong)
+    for name, value in values.items():
+        complaints = Complaints()
+        if isinstance(value, str):
+            read = parse_expression(value, complaints)
+            unknown = sorted(names(read) - {*system.parameter_names, "pi"}) if read is not None else []
+            wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
+            wrong += [f"{name} = {value}: unknown name {other}" for other in unknown]
+            if read is not None:
+                expressions[name] = read
+        elif isinstance(value, (int, float, Fraction)):
+            if not isfinite(value):
+                wrong.append(f"{name} = {value} is no number")
+            else:
+                expressions[name] = number(Fraction(value))
+        else:
+            expressions[name] = value
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    return expressions
 
 
 def wrong_with(request: Request) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING
@@ -79,30 +79,13 @@ def _read(
     kind: str,
     every: bool = False,
 ) -> dict[str, Expression]:
+    expressions: dict[str, Expression] = {}
     wrong = [f"there is no {kind} called {name}" for name in values if name not in known]
     wrong += [f"no motion is given for {name}" for name in known if every and name not in values]
-
-    def read(name: str, value: str, complaints: Complaints) -> Expression | None:
-        return read_law(value, system, complaints, in_line, known.get(name, LAW))
-
-    return expressions_of(values, read, wrong)
-
-
-def expressions_of(
-    values: Mapping[str, Expression | Fraction | float | str],
-    read: Callable[[str, str, Complaints], Expression | None],
-    wrong: Sequence[str] = (),
-) -> dict[str, Expression]:
-    """Numbers, and texts as they are ``read``, as expressions by name.
-
-    Raises ValueError with everything that is wrong, and with what is known to be.
-    """
-    expressions: dict[str, Expression] = {}
-    wrong = [*wrong]
     for name, value in values.items():
         complaints = Complaints()
         if isinstance(value, str):
-            law = read(name, value, complaints)
+            law = read_law(value, system, complaints, in_line, known.get(name, LAW))
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             if law is not None:
                 expressions[name] = law
