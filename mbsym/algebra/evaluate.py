@@ -49,15 +49,7 @@ class Carrier:
             return x(*(self._generator(k) if used[k] > 0 else algebra.zero for k in range(len(used))))
         if isinstance(algebra, BallsAtRationals):
             return self._enclosed(x, algebra)
-        self.ring.spend(20 * len(x))
-        total = algebra.zero
-        for monomial, coefficient in x.terms():
-            term = algebra.number(rationals.fraction(coefficient))
-            for index, exponent in enumerate(monomial):
-                if exponent:
-                    term = algebra.times(term, self._power(index, int(exponent)))
-            total = total + term
-        return algebra.reduce(total)
+        return self.termwise([(c, [(k, int(n)) for k, n in enumerate(monomial) if n]) for monomial, c in x.terms()])
 
     def termwise(self, terms: Sequence[tuple[fmpq, Sequence[tuple[int, int]]]]) -> Scalar:
         """The sum of terms given as a coefficient and (generator, exponent) pairs."""
@@ -138,3 +130,11 @@ class Carrier:
         if name not in self.environment:
             raise NoValue(name)
         return self.environment[name]
+
+
+def at_rationals(ring: Ring, values: Mapping[str, Any]) -> Carrier:
+    """Evaluates exactly where the values are fractions; others have no value there."""
+    algebra = Rationals({}, {})
+    return Carrier(
+        ring, algebra, {name: algebra.number(value) for name, value in values.items() if isinstance(value, Fraction)}
+    )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from functools import reduce
 from itertools import compress, count
 from typing import Any
 
@@ -87,11 +88,13 @@ def _is_irreducible(p: Polynomial) -> bool:
 def content(p: Polynomial) -> Any:
     """The number by which p has to be divided to be primitive, with whole coefficients and a positive leading one."""
     coefficients = p.coeffs()
-    divisor = coefficients[0]
-    for coefficient in coefficients[1:]:
-        divisor = divisor.gcd(coefficient)
-    divisor = abs(divisor)
+    divisor = abs(common_divisor(coefficients))
     return divisor if coefficients[0] > 0 else -divisor
+
+
+def common_divisor(values: Sequence[Any]) -> Any:
+    """The greatest one of numbers or polynomials, of which there is one at least."""
+    return reduce(lambda x, y: x.gcd(y), values)
 
 
 def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:

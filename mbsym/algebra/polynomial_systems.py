@@ -418,9 +418,7 @@ class _Solver:
         self, basis: list[Polynomial], free: tuple[int, ...], branch: _Branch
     ) -> tuple[list[Polynomial], list[Polynomial]]:
         """(the factors of the leading coefficients in QQ[free], generators of the closure of where none vanishes)."""
-        order = [k for k in range(self.nvars) if k not in free] + list(free)
-        names = self.context.names()
-        lexicographic = context(["#inverse", *(names[k] for k in order)], lexicographic=True)
+        order, lexicographic = self._with_last(free)
         moved = [_moved(x, order, lexicographic) for x in basis]
         ordered = self._bounded_basis(moved, lexicographic)
         bound = self.nvars - len(free)
@@ -438,12 +436,24 @@ class _Solver:
         removed = [*coefficients.values(), *branch.nonzero]
         if not removed:
             return [], list(basis)
-        inverse = lexicographic.gens()[0]
-        for x in removed:
-            inverse = inverse * _moved(x, order, lexicographic)
-        saturated = self._bounded_basis([*ordered, inverse - 1], lexicographic)
-        closure = [_moved_back(x, order, self.context) for x in saturated if x.degrees()[0] <= 0]
+        closure = self._saturated(ordered, removed, order, lexicographic)
         return [x for x in coefficients.values() if self._can_vanish(x)], closure
+
+    def _with_last(self, last: Sequence[int]) -> tuple[list[int], Any]:
+        """All unknowns with some of them last, and a lexicographic context of these behind one that is an inverse."""
+        order = [k for k in range(self.nvars) if k not in last] + list(last)
+        names = self.context.names()
+        return order, context(["#inverse", *(names[k] for k in order)], lexicographic=True)
+
+    def _saturated(
+        self, generators: Sequence[Any], nonzero: Sequence[Any], order: Sequence[int], where: Any
+    ) -> list[Any]:
+        """A basis of what vanishes where the generators do and nothing of ``nonzero``."""
+        inverse = where.gens()[0]
+        for x in nonzero:
+            inverse = inverse * _moved(x, order, where)
+        basis = self._bounded_basis([*generators, *([inverse - 1] if nonzero else [])], where)
+        return [_moved_back(x, order, self.context) for x in basis if x.degrees()[0] <= 0]
 
     def _bounded_basis(self, generators: list[Polynomial], where: Any) -> list[Polynomial]:
         limits = (self.limits.elements, self.limits.terms, self.limits.bits)

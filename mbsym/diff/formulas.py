@@ -23,7 +23,7 @@ from mbsym.expressions.parser import DERIVED, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
 from mbsym.expressions.table import Table
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Operation, walk
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Operation, rewritten, walk
 from mbsym.formulas.formula import Formula
 
 #: Differences of more terms than this are counted, and their first term is told.
@@ -103,16 +103,14 @@ def _parsed(text: str, tables: Mapping[str, Table]) -> Expression | None:
 
 def _with_slopes(tree: Expression, orders: Mapping[str, int]) -> Expression:
     """Calls of these names are those of the derivatives of their tables."""
-    match tree:
-        case Negative(operand):
-            return Negative(_with_slopes(operand, orders))
-        case Operation(operator, left, right):
-            return Operation(operator, _with_slopes(left, orders), _with_slopes(right, orders))
-        case Call(function, argument, more=more, table=table):
-            inside = (_with_slopes(expression, orders) for expression in (argument, *more))
-            first, *others = inside
-            return Call(function, first, None, tuple(others), table, orders.get(function, 0))
-    return tree
+    return rewritten(
+        tree,
+        lambda x: (
+            Call(x.function, _with_slopes(x.argument, orders), table=x.table, order=orders[x.function])
+            if isinstance(x, Call) and x.function in orders
+            else None
+        ),
+    )
 
 
 _NOWHERE = Span(1, 1, 1)

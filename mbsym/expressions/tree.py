@@ -7,14 +7,17 @@ how to differentiate itself; it knows no mechanics and no polynomials.  ``mbsym.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import TypeVar
 
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import is_velocity
 from mbsym.expressions.table import Curve, Table, curve_name
+
+T = TypeVar("T")
 
 #: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.
 SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
@@ -113,6 +116,22 @@ def children(expression: Expression) -> tuple[Expression, ...]:
     return ()
 
 
+def rewritten(expression: Expression, change: Callable[[Expression], Expression | None]) -> Expression:
+    """The expression with what ``change`` puts in the place of parts of it, the outermost first; None: it stays."""
+    changed = change(expression)
+    if changed is not None:
+        return changed
+    match expression:
+        case Negative(operand):
+            return negative(rewritten(operand, change))
+        case Operation(operator, left, right):
+            return Operation(operator, rewritten(left, change), rewritten(right, change))
+        case Call(function, argument, more=more, table=table, order=order):
+            others = tuple(rewritten(extra, change) for extra in more)
+            return Call(function, rewritten(argument, change), more=others, table=table, order=order)
+    return expression
+
+
 def walk(expression: Expression) -> Iterator[Expression]:
     """Every node of the tree, parents first, left to right."""
     pending = [expression]
@@ -125,6 +144,17 @@ def walk(expression: Expression) -> Iterator[Expression]:
 def names(expression: Expression) -> set[str]:
     """The names that occur, ``pi`` excepted."""
     return {node.name for node in walk(expression) if isinstance(node, Name)} - set(CONSTANTS)
+
+
+def reached(needs: Mapping[T, Iterable[T]], start: Iterable[T]) -> set[T]:
+    """All that something depends on, directly or through others, and what it starts from."""
+    known = set(start)
+    pending = list(known)
+    while pending:
+        new = set(needs.get(pending.pop(), ())) - known
+        known |= new
+        pending += new
+    return known
 
 
 def curve_of(table: Table, order: int = 0) -> Curve:
@@ -183,18 +213,14 @@ def slope_written_out(curve: Curve, x: Expression) -> Expression:
 
 def without_tables(expression: Expression, chosen: Callable[[Call], bool]) -> Expression:
     """The expression with the chosen calls of tables written out."""
-    match expression:
-        case Call(function, argument, more=more, table=table, order=order):
-            inner = without_tables(argument, chosen)
-            if table is not None and order == 0 and chosen(expression):
-                return written_out(table, inner)
-            others = tuple(without_tables(extra, chosen) for extra in more)
-            return Call(function, inner, more=others, table=table, order=order)
-        case Negative(operand):
-            return negative(without_tables(operand, chosen))
-        case Operation(operator, left, right):
-            return Operation(operator, without_tables(left, chosen), without_tables(right, chosen))
-    return expression
+
+    def change(part: Expression) -> Expression | None:
+        match part:
+            case Call(_, argument, table=Table() as table, order=0) if chosen(part):
+                return written_out(table, without_tables(argument, chosen))
+        return None
+
+    return rewritten(expression, change)
 
 
 def sticks(call: Call) -> bool:
@@ -429,17 +455,7 @@ def _derivative_of_function(function: str, argument: Expression) -> Expression:
 
 def substitute(expression: Expression, replacements: Mapping[str, Expression]) -> Expression:
     """The expression with names replaced, all at once."""
-    match expression:
-        case Name(name):
-            return replacements.get(name, expression)
-        case Negative(operand):
-            return negative(substitute(operand, replacements))
-        case Operation(operator, left, right):
-            return Operation(operator, substitute(left, replacements), substitute(right, replacements))
-        case Call(function, argument, more=more, table=table, order=order):
-            others = tuple(substitute(extra, replacements) for extra in more)
-            return Call(function, substitute(argument, replacements), more=others, table=table, order=order)
-    return expression
+    return rewritten(expression, lambda part: replacements.get(part.name) if isinstance(part, Name) else None)
 
 
 # --- printing back ---------------------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
 from math import gcd
-from typing import Any
+from typing import Any, ClassVar
 
 from flint import fmpq
 
@@ -34,6 +34,14 @@ class Shown(GuessesNames):
 
     __slots__ = ()
 
+    #: By name what of it tells how long it is: formulas, matrices, other results, or tuples of these.
+    counted: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def terms(self) -> int:
+        """How many terms that has."""
+        return sum(map(_terms, (getattr(self, name) for name in self.counted)))
+
     def __repr__(self) -> str:
         parts = (f"{name}: {_short(value)}" for name, value in _parts(self))
         return f"{type(self).__name__}({', '.join(parts)})"
@@ -41,6 +49,12 @@ class Shown(GuessesNames):
     def _repr_latex_(self) -> str:
         lines = [f"\\text{{{_tex(name.replace('_', ' '))}}} &= {_latex(value)}" for name, value in _parts(self)]
         return "$\\displaystyle \\begin{aligned} " + " \\\\ ".join(lines) + " \\end{aligned}$"
+
+
+def _terms(value: Any) -> int:
+    if isinstance(value, (tuple, list)):
+        return sum(map(_terms, value))
+    return 0 if value is None else int(value.terms)
 
 
 def _parts(record: Any) -> list[tuple[str, Any]]:

@@ -24,6 +24,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.tree import (
     Angles,
@@ -77,11 +78,9 @@ def present(ring: Ring, polynomial: Polynomial, angles: Angles = "products") -> 
     return _presenter(ring)(polynomial, angles)
 
 
+@remembered
 def _presenter(ring: Ring) -> Presenter:
-    presenter = _PRESENTERS.get(ring)
-    if presenter is None:
-        presenter = _PRESENTERS[ring] = Presenter(ring)
-    return presenter
+    return Presenter(ring)
 
 
 def terms_read(ring: Ring, polynomial: Polynomial, angles: Angles) -> int:
@@ -91,10 +90,7 @@ def terms_read(ring: Ring, polynomial: Polynomial, angles: Angles) -> int:
 
 def length(ring: Ring, shape: Sum) -> int:
     """How much a reader meets: names, numbers, functions, signs, brackets.  The ring has presented the shape."""
-    return _PRESENTERS[ring].length(shape)
-
-
-_PRESENTERS: WeakKeyDictionary[Ring, Presenter] = WeakKeyDictionary()
+    return _presenter(ring).length(shape)
 
 
 def printed(

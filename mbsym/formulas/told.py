@@ -19,6 +19,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import reached
 from mbsym.formulas.formula import Formula
 
 #: Nodes without a meaning get a name where several others need them and they have at least so many terms.
@@ -62,17 +63,9 @@ class Told(Generic[M]):
 
     def wanted(self, formulas: Iterable[Formula], known: Iterable[str] = ()) -> tuple[Definition[M], ...]:
         """The definitions that some formulas need, in order, besides those of names ``known`` before."""
-        by_index = {self.index(x.name): x for x in self.definitions}
-        needed: set[str] = set()
-        pending = [self.ring.held([x.polynomial for x in formulas])]
-        while pending:
-            for index in pending.pop():
-                definition = by_index.get(index)
-                if definition is not None and definition.name not in needed:
-                    needed.add(definition.name)
-                    pending.append(self.held_by[definition.name])
-        skipped = set(known)
-        return tuple(x for x in self.definitions if x.name in needed and x.name not in skipped)
+        needs = {self.index(x.name): self.held_by[x.name] for x in self.definitions}
+        needed, skipped = reached(needs, self.ring.held([x.polynomial for x in formulas])), set(known)
+        return tuple(x for x in self.definitions if self.index(x.name) in needed and x.name not in skipped)
 
     @cached_property
     def held_by(self) -> dict[str, set[int]]:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from weakref import WeakKeyDictionary
 
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.rates import derivative_of
 from mbsym.expressions.table import OUTSIDE_ZERO, Curve, Table, Tabulated
@@ -94,15 +94,11 @@ RESERVED = (
     "reducedPotential", "routhMassMatrix", "routhForcing", "ignoredRates", "routhEquations",
 )  # fmt: skip
 
-_NAMES: WeakKeyDictionary[Ring, WolframNames] = WeakKeyDictionary()
 
-
+@remembered
 def wolfram_names(ring: Ring) -> WolframNames:
     """The ring's renaming, made once; a part of a ring has the names of the whole."""
-    ring = ring.whole if isinstance(ring, ParameterRing) else ring
-    if ring not in _NAMES:
-        _NAMES[ring] = WolframNames(ring)
-    return _NAMES[ring]
+    return wolfram_names(ring.whole) if isinstance(ring, ParameterRing) else WolframNames(ring)
 
 
 class WolframPrinter(InfixPrinter):

@@ -35,7 +35,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.problem import ExactVerdicts
+from mbsym.problems.stability.problem import ExactVerdicts, blocks_of
 from mbsym.problems.stability.verdict import Verdict, combine, displaced, off_the_leaf
 from mbsym.problems.stability.words import Word
 
@@ -254,13 +254,9 @@ class IrrationalSection:
         with ctx.workprec(BITS):
             ranges = {x.name: between(box.x0, box.x1, BITS), y.name: between(box.y0, box.y1, BITS)}
             values = _Values(self._scene, self._solved, numbers | ranges)
-            basis, evaluate = part.basis, self._scene.ring.evaluate
-            names = part.names if basis is None else basis.coordinates
-            at = [self._linear.coordinates.index(name) for name in names]
-            blocks = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in self._linear.matrices]
-            if basis is not None:
-                blocks = [basis.congruent(self._scene.ring, block) for block in blocks]
-            return [[[evaluate(x, values) for x in row] for row in block] for block in blocks]
+            names = part.names if part.basis is None else part.basis.coordinates
+            blocks = blocks_of(self._scene, self._linear, names, part.basis)
+            return [[[self._scene.ring.evaluate(x, values) for x in row] for row in block] for block in blocks]
 
     def at(self, x: Rational, y: Rational) -> Verdict:
         """The verdict at a point, by the route that problem 6 takes at the numbers of a description."""

@@ -25,7 +25,7 @@ from mbsym.algebra.arrangements.arrangement import Region
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.plane import Point
-from mbsym.algebra.polynomial_systems import Limits, _Branch, _moved, _moved_back, _Solver, context
+from mbsym.algebra.polynomial_systems import Limits, _Branch, _moved, _Solver
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, factored
 from mbsym.maps.branches_curve import INFINITY_OPEN, MASS_OPEN, Varied, searches_over
@@ -262,17 +262,8 @@ class _Eliminating(_Solver):
         known = [x for x in basis if self._is_alone(x)]
         if known:
             return sorted(known, key=len)
-        order = [k for k in range(self.nvars) if k not in self.kept] + list(self.kept)
-        names = self.context.names()
-        lexicographic = context(["#inverse", *(names[k] for k in order)], lexicographic=True)
-        generators = [_moved(x, order, lexicographic) for x in basis]
-        if nonzero:
-            inverse = lexicographic.gens()[0]
-            for x in nonzero:
-                inverse = inverse * _moved(x, order, lexicographic)
-            generators.append(inverse - 1)
-        reduced_basis = self._bounded_basis(generators, lexicographic)
-        backs = [_moved_back(x, order, self.context) for x in reduced_basis if x.degrees()[0] <= 0]
+        order, where = self._with_last(self.kept)
+        backs = self._saturated([_moved(x, order, where) for x in basis], nonzero, order, where)
         return sorted((x for x in backs if self._is_alone(x)), key=len)
 
     def _is_alone(self, x: Any) -> bool:

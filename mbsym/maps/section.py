@@ -26,7 +26,7 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis
-from mbsym.expressions.tree import names
+from mbsym.expressions.tree import names, reached
 from mbsym.maps.axis import Axis
 from mbsym.maps.images import Image, Images, Irrational, common_denominator
 from mbsym.mechanics.kinematics import Scene
@@ -454,13 +454,7 @@ def _remaining(
     """The description's own numbers, but for parameters that stand in symbols that are given."""
     meaning = {item.name: names(item.value) for item in system.notation}
     meaning |= {item.name: names(item.value) for item in system.relations}
-    spoken: set[str] = set()
-    pending = [x for name in (*chosen, *own) if name in meaning for x in meaning[name]]
-    while pending:
-        name = pending.pop()
-        if name not in spoken:
-            spoken.add(name)
-            pending += meaning.get(name, ())
+    spoken = reached(meaning, (x for name in (*chosen, *own) for x in meaning.get(name, ())))
     taken = {*chosen, *own, *spoken, *(item.name for item in system.relations), *(name for name, _ in motion.solved)}
     values = ((item.name, rational(item.value)) for item in system.parameters if item.value is not None)
     return {name: value for name, value in values if value is not None and name not in taken}

@@ -23,12 +23,13 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TypeVar, cast
+from typing import cast
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.tree import reached
 from mbsym.mechanics.constraints.rows import Row as ConstraintRow
 from mbsym.mechanics.constraints.rows import constraint_rows
 from mbsym.mechanics.kinematics import Scene
@@ -572,19 +573,6 @@ def felt(found: Expansion, equations: Projected) -> tuple[int, ...]:
     pending = {j for row in equations.C for j, x in enumerate(row) if not x.is_zero()}
     pending |= {j for j in rows if j in reached(rows, rows[j])}
     return tuple(sorted(reached(rows, pending)))
-
-
-T = TypeVar("T")
-
-
-def reached(needs: Mapping[T, set[T]], start: set[T]) -> set[T]:
-    """Everything that some variables depend on, and these."""
-    known, pending = set(start), list(start)
-    while pending:
-        new = needs[pending.pop()] - known
-        known |= new
-        pending += new
-    return known
 
 
 def _cut(scene: Scene, forms: Sequence[Form], columns: Sequence[int]) -> Rows:

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, Name, add, divide, multiply, number, subtract
 from mbsym.mechanics.kinematics import Scene
@@ -36,20 +36,9 @@ def motion_derivatives(system: System) -> dict[str, tuple[Expression, Expression
     return derivatives
 
 
-#: What was found scene by scene: it is asked for again and again.
-_TURNING: WeakKeyDictionary[Scene, tuple[str, ...]] = WeakKeyDictionary()
-_RELATIONS: WeakKeyDictionary[Scene, dict[int, Polynomial]] = WeakKeyDictionary()
-_CARRIED: WeakKeyDictionary[Scene, dict[int, Polynomial]] = WeakKeyDictionary()
-
-
+@remembered  # what is found scene by scene is asked for again and again
 def turning(scene: Scene) -> tuple[str, ...]:
     """The coordinates whose unperturbed rate is not zero, relations between parameters used."""
-    if scene not in _TURNING:
-        _TURNING[scene] = _turning(scene)
-    return _TURNING[scene]
-
-
-def _turning(scene: Scene) -> tuple[str, ...]:
     rates = {name: scene.lower(rate) for name, (_, rate) in motion_values(scene.system).items()}
     if all(rate.is_zero() for rate in rates.values()):
         return ()
@@ -119,10 +108,7 @@ def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict
     values = motion_values(system) | {item.name: (item.initial or ZERO, item.rate) for item in system.of_constant_rate}
     driven, images = [item.name for item in system.of_constant_rate], relations(scene)
     if rates is None:
-        if scene not in _CARRIED:
-            own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
-            _CARRIED[scene] = carried(scene, own)
-        return dict(_CARRIED[scene])
+        return dict(_carried(scene))
     moved = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in driven}
     polynomials: dict[int, Polynomial] = {}
     for name, (first, ratio) in in_step(scene.ring, {**moved, **rates}).items():
@@ -131,6 +117,13 @@ def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict
             kind = "prescribed" if name in driven else "coordinate"
             polynomials |= _standing(scene, kind, name, add(values[name][0], way))
     return polynomials
+
+
+@remembered
+def _carried(scene: Scene) -> dict[int, Polynomial]:
+    values, images = motion_values(scene.system), relations(scene)
+    own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
+    return carried(scene, own)
 
 
 def _standing(scene: Scene, kind: str, name: str, value: Expression) -> dict[int, Polynomial]:
@@ -156,11 +149,10 @@ def rate_on_motion(scene: Scene, x: Polynomial) -> Polynomial:
 
 def relations(scene: Scene) -> dict[int, Polynomial]:
     """Generator indices of dependent parameters, their sines and cosines, and the values in independent ones."""
-    if scene not in _RELATIONS:
-        _RELATIONS[scene] = _relations(scene)
-    return dict(_RELATIONS[scene])
+    return dict(_relations(scene))
 
 
+@remembered
 def _relations(scene: Scene) -> dict[int, Polynomial]:
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}

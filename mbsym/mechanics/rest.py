@@ -14,15 +14,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.tree import (
-    ZERO,
-    Call,
-    Expression,
-    names,
-    number,
-    substitute,
-    walk,
-)
+from mbsym.expressions.tree import ZERO, Call, Expression, names, number, reached, substitute, walk
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
@@ -54,19 +46,10 @@ def rational_values(values: Mapping[str, Value]) -> dict[str, Fraction]:
 
 def missing_values(system: System, values: Mapping[str, Value]) -> tuple[str, ...]:
     """The parameters whose numbers the steady motions need, but which have none; in the order of declaration."""
-    dependent = {item.name: item.value for item in system.relations}
+    dependent = {item.name: names(item.value) for item in system.relations}
     rates = tuple(entry.rate for entry in system.motion)
-    pending = [
-        name
-        for x in expressions((system.bodies, held(system).loads, system.prescribed, system.constraints, rates))
-        for name in names(x)
-    ]
-    needed: set[str] = set()
-    while pending:
-        name = pending.pop()
-        if name not in needed:
-            needed.add(name)
-            pending += names(dependent[name]) if name in dependent else ()
+    own = expressions((system.bodies, held(system).loads, system.prescribed, system.constraints, rates))
+    needed = reached(dependent, (name for x in own for name in names(x)))
     return tuple(x for x in system.parameter_names if x in needed and x not in values and x not in dependent)
 
 

@@ -31,7 +31,7 @@ from mbsym.algebra.matrices import determinant, solved
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
-from mbsym.expressions.tree import divide, number
+from mbsym.expressions.tree import divide, number, reached
 from mbsym.mechanics import frames as quaternions
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
@@ -387,13 +387,8 @@ class SpeedForm:
     def occurring(self, formulas: Sequence[Polynomial]) -> tuple[Variable, ...]:
         """The positions on which formulas depend, and those on which their derivatives depend."""
         ring, names = self.ring, [position.name for position in self.positions]
-        dependencies: set[str] = set()
-        new = {name for x in formulas for name in ring.dependencies(x, names)}
-        while new:
-            dependencies |= new
-            new = {
-                name for position_name in new for name in ring.dependencies(self.rates[position_name], names)
-            } - dependencies
+        needs = {name: ring.dependencies(self.rates[name], names) for name in names}
+        dependencies = reached(needs, (name for x in formulas for name in ring.dependencies(x, names)))
         return tuple(position for position in self.positions if position.name in dependencies)
 
 

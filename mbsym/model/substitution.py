@@ -28,6 +28,7 @@ from mbsym.expressions.tree import (
     negative,
     number,
     power,
+    rewritten,
     sign_by_structure,
     substitute,
     subtract,
@@ -268,20 +269,14 @@ def told_by(system: System, name: str, value: Expression) -> System:
 def on_one_side(system: System, name: str, side: int) -> System:
     """The system where a coordinate has one sign, +1 or -1: abs and sign of it and of its multiples put in."""
 
-    def one_sided(expression: Expression, images: Mapping[str, Expression]) -> Expression:
-        match expression:
-            case Negative(operand):
-                return negative(one_sided(operand, images))
-            case Operation(operator, left, right):
-                return Operation(operator, one_sided(left, images), one_sided(right, images))
+    def one_sided(part: Expression) -> Expression | None:
+        match part:
             case Call("abs" | "sign" as function, argument) if (slope := _multiple(argument, name)) is not None:
                 turn = number(Fraction(side if slope > 0 else -side))
                 return multiply(turn, argument) if function == "abs" else turn
-            case Call():
-                return replace(expression, argument=one_sided(expression.argument, images))
-        return expression
+        return None
 
-    return put(_motions_alone(system), {name: Name(name)}, one_sided)
+    return put(_motions_alone(system), {name: Name(name)}, lambda expression, _: rewritten(expression, one_sided))
 
 
 def _multiple(expression: Expression, name: str) -> Fraction | None:

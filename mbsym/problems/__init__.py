@@ -20,7 +20,7 @@ TITLES = {
 NUMBERS = tuple(range(1, len(TITLES) + 1))
 
 
-def ranges(numbers: Iterable[int] = NUMBERS) -> str:
+def ranges(numbers: Iterable[int] = NUMBERS, to: str = " to ") -> str:
     """``1 to 8, 11``."""
     groups: list[list[int]] = []
     for number in sorted(numbers):
@@ -28,4 +28,4 @@ def ranges(numbers: Iterable[int] = NUMBERS) -> str:
             groups[-1].append(number)
         else:
             groups.append([number])
-    return ", ".join(f"{group[0]} to {group[-1]}" if len(group) > 1 else str(group[0]) for group in groups)
+    return ", ".join(f"{group[0]}{to}{group[-1]}" if len(group) > 1 else str(group[0]) for group in groups)

@@ -95,6 +95,8 @@ class Hamilton(Shown):
     constraints on velocities are (None: undecided), ``structure`` is W; None where there are no Poisson brackets.
     """
 
+    counted = ("hamiltonian",)
+
     momenta: tuple[str, ...]
     momenta_in_velocities: Column
     hamiltonian: Formula
@@ -105,11 +107,6 @@ class Hamilton(Shown):
     directions: Matrix
     structure: Matrix | None
     integrable: bool | None
-
-    @property
-    def terms(self) -> int:
-        """Terms of H."""
-        return self.hamiltonian.terms
 
     @property
     def plain(self) -> bool:
@@ -229,6 +226,8 @@ class Routh(Shown):
     ``reduced_potential`` W, of R = 1/2 s'.M_R s' + b.s' - W.
     """
 
+    counted = ("function",)
+
     ignored: tuple[str, ...]
     momenta: tuple[str, ...]
     coordinates: tuple[str, ...]
@@ -238,11 +237,6 @@ class Routh(Shown):
     ignored_rates: Column
     linear: Column
     reduced_potential: Formula
-
-    @property
-    def terms(self) -> int:
-        """Terms of R."""
-        return self.function.terms
 
 
 class NoBrackets(Failure):

@@ -39,6 +39,8 @@ class Energy(Shown):
     ``speeds``: what A2 and A1 belong to, velocities or speeds of their own.
     """
 
+    counted = ("kinetic_energy", "force_function")
+
     kinetic_energy: Formula
     A2: Matrix
     A1: Column
@@ -46,11 +48,6 @@ class Energy(Shown):
     force_function: Formula
     cyclic: tuple[str, ...]
     speeds: tuple[str, ...]
-
-    @property
-    def terms(self) -> int:
-        """Terms of T and U."""
-        return self.kinetic_energy.terms + self.force_function.terms
 
 
 def energy(scene: Scene, form: SpeedForm | None = None) -> Energy:

@@ -50,14 +50,11 @@ class Embedded(Shown):
     Without constraints M and f.
     """
 
+    counted = ("mass_matrix", "forcing")
+
     free: tuple[str, ...]
     mass_matrix: Matrix
     forcing: Column
-
-    @property
-    def terms(self) -> int:
-        """Terms of both."""
-        return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,6 +64,8 @@ class Equations(Shown):
     With ``constraints`` M q'' = f + J^T lambda; ``embedded`` are the equations without multipliers, which are the same
     where there are no constraints; None where they outgrow the budget.
     """
+
+    counted = ("mass_matrix", "forcing")
 
     mass_matrix: Matrix
     forcing: Column
@@ -94,11 +93,6 @@ class Equations(Shown):
     def equalities(self, names: Sequence[str]) -> Column:
         """The same of all rows."""
         return tuple(self.equality(i, names) for i, _ in enumerate(self.forcing))
-
-    @property
-    def terms(self) -> int:
-        """Terms of M and f."""
-        return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
 
 
 def equations(scene: Scene, energy: Energy) -> Equations:

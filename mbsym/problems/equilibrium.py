@@ -57,6 +57,8 @@ class Equilibrium(Shown):
     lists conditions that can never hold; ``unsteady`` the quantities through which a residual still varies with time.
     """
 
+    counted = ("residuals",)
+
     satisfied: bool
     residuals: Column
     conditions: tuple[Formula, ...] = ()
@@ -64,11 +66,6 @@ class Equilibrium(Shown):
     impossible: tuple[Formula, ...] = ()
     unsteady: tuple[str, ...] = ()
     singular: tuple[Displacement, ...] = ()
-
-    @property
-    def terms(self) -> int:
-        """Terms of the residuals."""
-        return sum(x.terms for x in self.residuals)
 
     @property
     def why_not(self) -> Message:

@@ -29,10 +29,9 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, solved
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import divide, number, substitute
+from mbsym.expressions.tree import divide, number, reached, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, Shown, column
-from mbsym.mechanics.expansion import reached
 from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene, over_ring
 from mbsym.mechanics.motion import motion_values, unperturbed_with, unsteady
@@ -52,15 +51,13 @@ class FirstOrder(Shown):
     quaternions among them.
     """
 
+    counted = ("A",)
+
     names: tuple[str, ...]
     values: Column
     A: Matrix
     relations: int
     norms: int
-
-    @property
-    def terms(self) -> int:
-        return self.A.terms
 
 
 def first_order(form: SpeedForm, equations: SpeedEquations, at: Equilibrium, reduced: Reduced) -> FirstOrder:

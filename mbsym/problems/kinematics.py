@@ -31,6 +31,8 @@ from mbsym.mechanics.kinematics import BodyMotion, Scene
 class BodyKinematics(Shown):
     """One body's kinematics; vectors have three components in the body's own axes."""
 
+    counted = ("rotation", "angular_velocity", "velocity_origin", "velocity_mass_centre")
+
     name: str
     attached_to: str
     rotation: Matrix
@@ -42,16 +44,9 @@ class BodyKinematics(Shown):
 
 @dataclass(frozen=True, repr=False)
 class Kinematics(Shown):
-    bodies: tuple[BodyKinematics, ...]
+    counted = ("bodies",)
 
-    @property
-    def terms(self) -> int:
-        """Terms of all its formulas."""
-        return sum(
-            body.rotation.terms
-            + sum(x.terms for x in (*body.angular_velocity, *body.velocity_origin, *body.velocity_mass_centre))
-            for body in self.bodies
-        )
+    bodies: tuple[BodyKinematics, ...]
 
     def body(self, name: str) -> BodyKinematics:
         """Those of the body of that name.  Raises KeyError where there is none."""

@@ -8,12 +8,12 @@ is singular or beyond all budgets tells nothing: less is known then, and nothing
 from __future__ import annotations
 
 from collections.abc import Iterable
-from weakref import WeakKeyDictionary
 
 from flint import arb
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, SingularPoint
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.expressions.tree import names
@@ -146,14 +146,9 @@ def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
     return definitions[name]
 
 
-#: What ``_definitions`` found, scene by scene: it is asked for symbol by symbol.
-_REMEMBERED: WeakKeyDictionary[Scene, dict[str, Polynomial]] = WeakKeyDictionary()
-
-
+@remembered  # it is asked for symbol by symbol
 def _definitions(scene: Scene) -> dict[str, Polynomial]:
     """The user's symbols in declared parameters alone, those left out that have no such form."""
-    if scene in _REMEMBERED:
-        return _REMEMBERED[scene]
     ring = scene.ring
     images: dict[int, Polynomial] = {}
     definitions: dict[str, Polynomial] = {}
@@ -166,5 +161,4 @@ def _definitions(scene: Scene) -> dict[str, Polynomial]:
             images[ring.index("parameter", item.name)] = definitions[item.name]
         except Failure:
             missing.add(item.name)
-    _REMEMBERED[scene] = definitions
     return definitions

@@ -138,6 +138,8 @@ class Linearisation(Shown):
     ``coordinates`` are the independent ones; ``about`` says what became of the others.
     """
 
+    counted = ("matrices", "B")
+
     about: Reduction
     M: Matrix
     D: Matrix
@@ -159,11 +161,6 @@ class Linearisation(Shown):
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
         return self.M, self.D, self.G, self.K, self.N
-
-    @property
-    def terms(self) -> int:
-        """Terms of the matrices."""
-        return sum(matrix.terms for matrix in self.matrices) + (0 if self.B is None else self.B.terms)
 
     @property
     def equalities(self) -> Column:

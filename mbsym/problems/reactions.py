@@ -71,6 +71,8 @@ class Reaction(Shown):
     are determined all the same.
     """
 
+    counted = ("force", "moment")
+
     body: str
     force: Column
     moment: Column
@@ -82,11 +84,6 @@ class Reaction(Shown):
     def undetermined(self) -> tuple[int, ...]:
         """Components that are not determined: 0, 1, 2 of the force, 3, 4, 5 of the moment."""
         return tuple(sorted({k for balance in self.balances for k in balance.components}))
-
-    @property
-    def terms(self) -> int:
-        """Terms of all its formulas."""
-        return sum(x.terms for x in (*self.force, *self.moment))
 
 
 def reactions(scene: Scene, tied: Constraints, programs: ConstrainedPrograms) -> tuple[Reaction, ...]:

@@ -59,6 +59,8 @@ class StateSpace(Shown):
     of equations that are given in the form x' = A x + B u they are x.
     """
 
+    counted = ("A", "B", "C", "D")
+
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -66,11 +68,6 @@ class StateSpace(Shown):
     B: Matrix
     C: Matrix
     D: Matrix
-
-    @property
-    def terms(self) -> int:
-        """Terms of the four matrices."""
-        return self.A.terms + self.B.terms + self.C.terms + self.D.terms
 
 
 def of_matrices(scene: Scene, linear: Linearisation) -> StateSpace:

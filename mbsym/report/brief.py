@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import worded
+from mbsym.problems import ranges
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED, Check
 from mbsym.report.content import Inline, Phrase, Said, joined
 from mbsym.report.language import Language
@@ -41,9 +42,9 @@ def brief(analysis: Analysis, seconds: float) -> Brief:
     stages = {number: analysis.stage(number) for number in analysis.problems}
     failures = [(number, stage.failure.short) for number, stage in stages.items() if stage.failure is not None]
     return Brief(
-        problems=ranges(number for number, stage in stages.items() if stage.failure is None) or write.said(NONE),
+        problems=ranges((n for n, stage in stages.items() if stage.failure is None), "-") or write.said(NONE),
         missing="; ".join(
-            f"{ranges(number for number, _ in group)}: {write.inline(worded(reason))}"
+            f"{ranges((n for n, _ in group), '-')}: {write.inline(worded(reason))}"
             for reason, group in groupby(failures, key=lambda item: item[1])
         ),
         self_check=write.inline(self_check(analysis.checks)),
@@ -51,17 +52,6 @@ def brief(analysis: Analysis, seconds: float) -> Brief:
         claims=write.inline(claims_counted([claim_line(result).word for result in analysis.claims])),
         seconds=seconds,
     )
-
-
-def ranges(numbers: Iterable[int]) -> str:
-    """``1-3, 5`` for 1, 2, 3, 5."""
-    runs: list[list[int]] = []
-    for number in sorted(numbers):
-        if runs and runs[-1][-1] == number - 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    return ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs)
 
 
 def self_check(checks: Sequence[Check]) -> Inline:

@@ -30,7 +30,7 @@ from mbsym.source.keys import CLAIM
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import NUMBER, Allowed, closest, did_you_mean
-from mbsym.source.settings import read_comparisons
+from mbsym.source.settings import read_comparisons, read_in_order
 
 #: What such names are in a scope, and abbreviations that hold some.
 SYMBOL, ABBREVIATION = OSCILLATION_KINDS = "oscillation", "oscillation abbreviation"
@@ -98,18 +98,10 @@ _MISSPELT = 0.8
 
 def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviation, ...]:
     """Symbols in order: each may use every name of the system and the symbols above it."""
-    abbreviations = []
     allowed = Allowed("an abbreviation", (*_PLACES, "acceleration", *OSCILLATION_KINDS))
-    entries = [] if node is None else list(reading.entries(node, "'abbreviations'"))
-    reading.scope.later, reading.scope.ordered = {entry.key.text for entry in entries}, "abbreviations are"
-    for entry in entries:
-        errors = reading.errors
-        value = reading.expression(entry.value, allowed)
-        kind = kind_of_abbreviation(value, reading)
-        if reading.scope.declare(entry.key.text, kind, entry.key.span) and reading.errors == errors:
-            abbreviations.append(Abbreviation(entry.key.text, value, entry.key.span))
-        reading.scope.later.discard(entry.key.text)
-    return tuple(abbreviations)
+    reading.scope.ordered = "abbreviations are"
+    declared = read_in_order(node, "'abbreviations'", allowed, reading, lambda x: kind_of_abbreviation(x, reading))
+    return tuple(Abbreviation(*item) for item in declared)
 
 
 def read_claims(
@@ -323,21 +315,20 @@ class _Reader:
             )
             span = None if equals_node is None else equals_node.span
             self.reading.error("misplaced-name", message, span, "give the coefficient alone")
+        hint = Message("write a whole number from 0 to [[most]]", most=MOST_ORDER)
         node = self.fields.require("order", "write for example order: 1")
-        scalar = None if node is None else self.reading.scalar(node, "'order'")
+        return self._whole(node, "'order'", 0, MOST_ORDER, "[[what]] is no order", hint)
+
+    def _whole(self, node: Node | None, what: str, least: int, most: int, words: str, hint: str) -> int:
+        """A whole number between bounds; 0 where there is none."""
+        scalar = None if node is None else self.reading.scalar(node, what)
         if scalar is None:
             return 0
         text = scalar.text.strip()
-        if not (text.isascii() and text.isdigit() and len(text) < 3 and int(text) <= MOST_ORDER):
-            message = Message("[[what]] is no order", what=ascii_safe(scalar.text))
-            self.reading.error(
-                "bad-number",
-                message,
-                scalar.span,
-                Message("write a whole number from 0 to [[most]]", most=MOST_ORDER),
-            )
-            return 0
-        return int(text)
+        if text.isascii() and text.isdigit() and len(text) < 5 and least <= int(text) <= most:
+            return int(text)
+        self.reading.error("bad-number", Message(words, what=ascii_safe(scalar.text)), scalar.span, hint)
+        return 0
 
     def tolerance(self) -> Expression | None:
         node = self.fields.get("tolerance")
@@ -350,16 +341,8 @@ class _Reader:
         return value
 
     def digits(self) -> int:
-        node = self.fields.get("digits")
-        scalar = None if node is None else self.reading.scalar(node, "'digits'")
-        if scalar is None:
-            return 0
-        text = scalar.text.strip()
-        if not (text.isascii() and text.isdigit() and len(text) < 5 and int(text) > 0):
-            message = Message("[[what]] is no number of digits", what=ascii_safe(scalar.text))
-            self.reading.error("bad-number", message, scalar.span, "write a whole number from 1")
-            return 0
-        return int(text)
+        words, hint = "[[what]] is no number of digits", "write a whole number from 1"
+        return self._whole(self.fields.get("digits"), "'digits'", 1, 9999, words, hint)
 
     # --- of what ---
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
-from mbsym.expressions.tree import ZERO, Expression, names
+from mbsym.expressions.tree import ZERO, Expression, names, reached
 from mbsym.model.system import (
     Assumption,
     InitialValue,
@@ -46,22 +46,9 @@ def read_relations(node: Node | None, reading: Reading) -> tuple[Relation, ...]:
 def _check_circles(relations: list[Relation], reading: Reading) -> None:
     needs = {relation.name: names(relation.value) for relation in relations}
     for relation in relations:
-        if _reaches(relation.name, needs):
+        if relation.name in reached(needs, needs[relation.name]):
             message = Message("'[[name]]' depends on itself through the relations", name=relation.name)
             reading.error("relation-cycle", message, relation.span)
-
-
-def _reaches(name: str, needs: dict[str, set[str]]) -> bool:
-    seen: set[str] = set()
-    pending = [name]
-    while pending:
-        for needed in needs.get(pending.pop(), set()):
-            if needed == name:
-                return True
-            if needed not in seen:
-                seen.add(needed)
-                pending.append(needed)
-    return False
 
 
 def read_assumptions(node: Node | None, reading: Reading) -> tuple[Assumption, ...]:
@@ -149,17 +136,23 @@ def _is_coordinate(key: Scalar, what: str, node: Node | None, reading: Reading, 
 
 def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:
     """Symbols in order: each may use parameters and the symbols above it."""
-    notation = []
     allowed = Allowed("a notation", ("parameter", "notation"))
-    entries = [] if node is None else list(reading.entries(node, "'notation'"))
+    declared = read_in_order(node, "'notation'", allowed, reading, lambda _: "notation")
+    return tuple(Notation(*item) for item in declared)
+
+
+def read_in_order(
+    node: Node | None, what: str, allowed: Allowed, reading: Reading, kind_of: Callable[[Expression], str]
+) -> Iterator[tuple[str, Expression, Span]]:
+    """Name, value and place of entries, each of which may use those above it."""
+    entries = [] if node is None else list(reading.entries(node, what))
     reading.scope.later = {entry.key.text for entry in entries}
     for entry in entries:
         errors = reading.errors
         value = reading.expression(entry.value, allowed)
-        if reading.scope.declare(entry.key.text, "notation", entry.key.span) and reading.errors == errors:
-            notation.append(Notation(entry.key.text, value, entry.key.span))
+        if reading.scope.declare(entry.key.text, kind_of(value), entry.key.span) and reading.errors == errors:
+            yield entry.key.text, value, entry.key.span
         reading.scope.later.discard(entry.key.text)
-    return tuple(notation)
 
 
 #: Variables that a description declares besides its coordinates.

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
 from mbsym.report.language import Language
-from mbsym.studies.study import Exit, Refusal
+from mbsym.studies.study import NOTHING_WRITTEN, Exit, Refusal
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -39,7 +39,7 @@ def not_closed(error: Exception, system: System) -> Refusal | None:
     say = Language(system.language).say
     if isinstance(error, NothingMoves):
         hint = say(Message("hint: [[hint]]", hint=error.remedy))
-        told = (f"  {hint}", say(Message("nothing was written.")))
+        told = (f"  {hint}", say(NOTHING_WRITTEN))
         return Refusal(f"error[{error.code}]: {say(error.reason)}", Exit.BROKEN_DOWN, told)
     if not isinstance(error, NotClosed):
         return None
@@ -65,4 +65,4 @@ def not_closed(error: Exception, system: System) -> Refusal | None:
     lines.append(Message("hint: [[hint]]", hint=hint))
     code = Exit.BAD_INPUT if error.fixed else Exit.BROKEN_DOWN
     printed = [f"  {say(line)}" for line in lines]
-    return Refusal(f"error[{error.code}]: {say(error.reason)}", code, (*printed, say(Message("nothing was written."))))
+    return Refusal(f"error[{error.code}]: {say(error.reason)}", code, (*printed, say(NOTHING_WRITTEN)))

@@ -359,6 +359,10 @@ class Study(Generic[R, F]):
     rare: Collection[str] = ()
 
 
+#: The last line of what would have written something.
+NOTHING_WRITTEN = Message("nothing was written.")
+
+
 def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:
     """What could not be had, why, and what to try next."""
     from mbsym.algebra.failures import message_of

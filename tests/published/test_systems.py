@@ -12,8 +12,9 @@ from conftest import SHIPPED, derived
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.problems import ranges
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check
-from mbsym.report.brief import brief, ranges
+from mbsym.report.brief import brief
 
 ROOT = SHIPPED.parent
 FILES = sorted(path for path in SHIPPED.iterdir() if path.suffix in {".yaml", ".txt"})
@@ -106,9 +107,9 @@ def test_a_wrong_claim_would_be_noticed() -> None:
 
 
 def test_ranges_of_numbers() -> None:
-    assert ranges([1, 2, 3, 7]) == "1-3, 7"
-    assert ranges([6, 5, 2]) == "2, 5-6"
-    assert ranges([]) == ""
+    assert ranges([1, 2, 3, 7], "-") == "1-3, 7"
+    assert ranges([6, 5, 2], "-") == "2, 5-6"
+    assert ranges([], "-") == ""
 
 
 def test_a_line_tells_what_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -85,13 +85,19 @@ def proved_coprime(modulus: Element, a: Sequence[Element], b: Sequence[Element])
 
 def divides(modulus: Element, g: Sequence[Element], a: Sequence[Element]) -> bool:
     """Whether the monic g divides a over QQ[x]/modulus, exactly."""
-    rest = list(a)
-    while len(rest) >= len(g):
-        top, shift = rest.pop() % modulus, len(rest) - len(g) + 1
+    return all(x == 0 for x in _divided([x % modulus for x in a], g, modulus)[1])
+
+
+def _divided(a: Sequence[Element], b: Sequence[Element], modulus: Element) -> tuple[list[Element], list[Element]]:
+    """(quotient, remainder) by a monic b over QQ[x]/modulus."""
+    rest, quotient = list(a), [ZERO] * max(len(a) - len(b) + 1, 0)
+    while len(rest) >= len(b):
+        top, shift = rest.pop(), len(rest) - len(b) + 1
+        quotient[shift] = top
         if top != 0:
-            for k, x in enumerate(g[:-1]):
+            for k, x in enumerate(b[:-1]):
                 rest[shift + k] = (rest[shift + k] - top * x) % modulus
-    return all(x % modulus == 0 for x in rest)
+    return quotient, rest
 
 
 class _Ring:
@@ -212,14 +218,7 @@ class Extension:
 
     def divided(self, a: OverField, b: OverField) -> tuple[OverField, OverField]:
         """(quotient, remainder) by a monic b."""
-        rest = list(a)
-        quotient = [ZERO] * max(len(a) - len(b) + 1, 0)
-        while len(rest) >= len(b):
-            top, shift = rest.pop(), len(rest) - len(b) + 1
-            quotient[shift] = top
-            if top != 0:
-                for k, x in enumerate(b[:-1]):
-                    rest[shift + k] = (rest[shift + k] - top * x) % self.modulus
+        quotient, rest = _divided(a, b, self.modulus)
         return quotient, self.trimmed(rest)
 
     def coprime(self, a: OverField, b: OverField) -> bool:

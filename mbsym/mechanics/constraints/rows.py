@@ -25,9 +25,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from typing import Any
-from weakref import WeakKeyDictionary
 
 from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.vectors import Vector
 from mbsym.expressions.message import Message
@@ -159,14 +159,10 @@ def _moved_by(scene: Scene, constraint: Constraint) -> set[str]:
     return {name for x in own for name in names(x)}
 
 
+@remembered
 def said_rows(scene: Scene) -> tuple[Row, ...]:
     """The rows over the ring without those that say 0 = 0 whatever the motion; found once in a scene."""
-    if scene not in _SAID:
-        _SAID[scene] = tuple(row for row in constraint_rows(scene) if not row.is_trivial(scene.algebra))
-    return _SAID[scene]
-
-
-_SAID: WeakKeyDictionary[Scene, tuple[Row, ...]] = WeakKeyDictionary()
+    return tuple(row for row in constraint_rows(scene) if not row.is_trivial(scene.algebra))
 
 
 def joined_rows(ring: Ring, rows: Sequence[Row]) -> tuple[Row, ...]:

@@ -65,13 +65,8 @@ def order_force_function(load: NewtonianGravity, scene: Scene[S]) -> S:
 
 
 def legendre(algebra: Algebra[S], x: S, y: S, order: int) -> list[S]:
-    """P_0 to P_order, homogeneous: k P_k = (2k - 1) x P_(k-1) - (k - 1) y P_(k-2)."""
-    polynomials = [algebra.one, x]
-    for k in range(2, order + 1):
-        ahead = algebra.times(algebra.number(Fraction(2 * k - 1, k)), algebra.times(x, polynomials[-1]))
-        behind = algebra.times(algebra.number(Fraction(k - 1, k)), algebra.times(y, polynomials[-2]))
-        polynomials.append(algebra.reduce(ahead - behind))
-    return polynomials
+    """P_0 to P_order, homogeneous: the coefficients of (1 - 2 s x + s^2 y)^(-1/2) in powers of s."""
+    return gegenbauer(algebra, -x, y, 1, order)
 
 
 def _spread(scene: Scene[S], motion: BodyMotion[S], e: Vector[S], c: Vector[S], x: S, y: S, order: int) -> dict[int, S]:

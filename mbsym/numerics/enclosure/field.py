@@ -168,17 +168,17 @@ class Model:
         least = _least(self.poly[0])
         if not (least > 0 and self.poly[0] > 0):
             return self._nothing()
-        return self._composed(
-            self.poly.log(),
-            lambda w: _up(-log(1 - w / least)) if w < least * (1 - 1e-9) else inf,
-            lambda w: _up(1 / (least - w)) if w < least else inf,
-        )
+        return self._within(self.poly.log(), least)
 
     def atan(self) -> Model:
         """The singularities +-i are sqrt(1 + c0^2) away: coefficients are at most 1/(k rho^k)."""
         least = _least((1 + self.poly[0] * self.poly[0]).sqrt())
+        return self._within(self.poly.atan(), least)
+
+    def _within(self, poly: Any, least: float) -> Model:
+        """Of functions whose coefficients are at most 1/(k rho^k), rho = ``least`` the way to a singularity."""
         return self._composed(
-            self.poly.atan(),
+            poly,
             lambda w: _up(-log(1 - w / least)) if w < least * (1 - 1e-9) else inf,
             lambda w: _up(1 / (least - w)) if w < least else inf,
         )

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node
-from mbsym.expressions.tree import Expression, names, number
+from mbsym.expressions.tree import Expression, names, number, reached
 from mbsym.model.states import InStates, described
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.closing import begun, closed, fitted, shown
@@ -166,15 +166,11 @@ def parametrised(
 
 def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:
     """The parameters that follow from some others through relations, in an order in which they can be computed."""
-    moving, ordered = set(free), []
-    for _ in system.relations:
-        for relation in system.relations:
-            if relation.name not in moving and names(relation.value) & moving:
-                moving.add(relation.name)
-    values = {relation.name: relation.value for relation in system.relations if relation.name in moving}
-    waiting = [name for name in values if name not in set(free)]
+    given, ordered = set(free), list[str]()
+    needs = {relation.name: names(relation.value) for relation in system.relations}
+    waiting = [name for name in needs if name not in given and reached(needs, needs[name]) & given]
     while waiting:
-        ready = [name for name in waiting if not names(values[name]) & set(waiting)]
+        ready = [name for name in waiting if not needs[name] & set(waiting)]
         ordered += ready or waiting
         waiting = [name for name in waiting if name not in ordered]
     return tuple(ordered)

@@ -45,6 +45,7 @@ from scipy.sparse.csgraph import connected_components
 
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import Failure, SingularPoint, message_of
+from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node
 from mbsym.algebra.rationals import ball
 from mbsym.numerics.dynamics import Dynamics
@@ -417,55 +418,31 @@ def _harmonics(code: Code, node: Node) -> _Harmonics | None:
 
 def series(code: Code, time: arb_series) -> list[Any]:
     """The outputs as power series of balls about ``time``, to as many terms as ``ctx.cap`` allows."""
-    program = code.program
-    values: dict[int, Any] = {}
-    for number in program.live(code.outputs):
-        operation, operands, payload = program.instructions[number]
-        arguments = [values[operand] for operand in operands]
-        match operation, arguments:
-            case "constant", _:
-                assert isinstance(payload, Fraction)
-                values[number] = arb_series([ball(payload)])
-            case "input", _:
-                values[number] = time
-            case "negative", [a]:
-                values[number] = -a
-            case "add", [a, b]:
-                values[number] = a + b
-            case "subtract", [a, b]:
-                values[number] = a - b
-            case "multiply", [a, b]:
-                values[number] = a * b
-            case "divide", [a, b]:
-                values[number] = _quotient(a, b)
-            case ("sinh" | "cosh" | "tanh") as name, [a]:
-                values[number] = _hyperbolic(name, a)
-            case ("sin" | "cos" | "sqrt" | "exp" | "log" | "atan") as name, [a]:
-                values[number] = getattr(a, name)()
-            case ("sign" | "abs") as name, [a]:
-                values[number] = _signed(name, a)
-            case name, _:
-                raise NotPeriodic("[[name]] has no power series here", name=name)
-    return [values[node.number] for node in code.outputs]
+    inputs: dict[str, Any] = {"t": time}
+    return code.program.evaluate(code.outputs, inputs, _PowerSeries(inputs))
 
 
-def _quotient(a: arb_series, b: arb_series) -> arb_series:
-    """a/b, no finite number where b may vanish, as of balls: divided as a series it is an error."""
-    return arb_series([arb.nan()] * ctx.cap) if _coefficient(b, 0).contains(0) else a / b
+class _PowerSeries(Balls):
+    """``arb_series`` scalars; no finite numbers where a divisor or what has a kink may vanish, as of balls."""
 
+    def number(self, value: Fraction | int) -> Any:
+        return arb_series([ball(value)])
 
-def _signed(name: str, x: arb_series) -> arb_series:
-    """sign x or |x|, no finite number where x may vanish; pivots of constraints hold them."""
-    first = _coefficient(x, 0)
-    sign = arb.nan() if first.contains(0) else arb(1 if first > 0 else -1)
-    return arb_series([sign]) if name == "sign" else x * sign
+    def reciprocal(self, x: Any) -> Any:
+        return arb_series([arb.nan()] * ctx.cap) if _coefficient(x, 0).contains(0) else 1 / x
 
-
-def _hyperbolic(name: str, x: arb_series) -> arb_series:
-    up, down = x.exp(), (-x).exp()
-    if name == "tanh":
-        return _quotient(up - down, up + down)
-    return (up - down) / 2 if name == "sinh" else (up + down) / 2
+    def function(self, name: str, x: Any) -> Any:
+        if name in ("sign", "abs"):  # pivots of constraints hold them
+            first = _coefficient(x, 0)
+            sign = arb.nan() if first.contains(0) else arb(1 if first > 0 else -1)
+            return arb_series([sign]) if name == "sign" else x * sign
+        if name in ("sinh", "cosh", "tanh"):
+            up, down = x.exp(), (-x).exp()
+            sine, cosine = (up - down) / 2, (up + down) / 2
+            return sine if name == "sinh" else cosine if name == "cosh" else sine * self.reciprocal(cosine)
+        if name in ("exp", "log", "atan"):
+            return getattr(x, name)()
+        raise NotPeriodic("[[name]] has no power series here", name=name)
 
 
 def _coefficient(value: arb_series, place: int) -> arb:

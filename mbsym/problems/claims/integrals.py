@@ -9,7 +9,7 @@ from itertools import product as combinations_of
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import names
+from mbsym.expressions.tree import names, reached
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
@@ -140,12 +140,7 @@ def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
         occurring |= set(ring.dependencies(x, variables))
         occurring |= {g.name for k, g in enumerate(ring.generators) if g.kind == "parameter" and _holds(ring, x, k)}
     made_of = {item.name: names(item.value) for item in system.relations}
-    pending = list(occurring)
-    while pending:
-        new = made_of.get(pending.pop(), set()) - occurring
-        occurring |= new
-        pending += new
-    return occurring
+    return reached(made_of, occurring)
 
 
 def _holds(ring: Ring, x: Polynomial, index: int) -> bool:

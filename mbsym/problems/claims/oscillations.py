@@ -28,7 +28,7 @@ from mbsym.algebra.terms import modulo
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, rewritten
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
@@ -592,11 +592,7 @@ class WaveFormulas:
 
     def _opened(self, expression: Expression) -> Expression:
         """What stands for an angle, in the phase."""
-        match expression:
-            case Name(name) if name in self.defined:
-                return self._opened(self.defined[name])
-            case Negative(operand):
-                return Negative(self._opened(operand))
-            case Operation(operator, left, right):
-                return Operation(operator, self._opened(left), self._opened(right))
-        return expression
+        defined = self.defined
+        return rewritten(
+            expression, lambda x: self._opened(defined[x.name]) if isinstance(x, Name) and x.name in defined else None
+        )

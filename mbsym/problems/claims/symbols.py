@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation, add, multiply, names, walk
+from mbsym.expressions.tree import ZERO, Call, Expression, Name, Number, add, multiply, names, reached, rewritten, walk
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
@@ -25,11 +25,10 @@ class Symbols:
     """
 
     @staticmethod
+    @remembered  # they are asked for again and again, claim by claim
     def of(owner: Any) -> Symbols:
         """Those of ``owner.system``, made once for its owner."""
-        if owner not in _REMEMBERED:
-            _REMEMBERED[owner] = Symbols(owner.system)
-        return _REMEMBERED[owner]
+        return Symbols(owner.system)
 
     def __init__(self, system: System) -> None:
         self.system = system
@@ -54,19 +53,15 @@ class Symbols:
 
     def opened(self, expression: Expression) -> Expression:
         """The expression with abbreviations under sin, cos and tan replaced by the angles that they are."""
-        match expression:
-            case Call("sin" | "cos" | "tan" as function, argument):
-                form = linear_form(argument)
-                opened = None if form is None else self._opened_form(form)
-                return Call(function, self.opened(argument) if opened is None else _written(opened))
-            case Call():
-                more = tuple(map(self.opened, expression.more))
-                return replace(expression, argument=self.opened(expression.argument), more=more)
-            case Negative(operand):
-                return Negative(self.opened(operand))
-            case Operation(operator, left, right):
-                return Operation(operator, self.opened(left), self.opened(right))
-        return expression
+
+        def change(part: Expression) -> Expression | None:
+            if not (isinstance(part, Call) and part.function in ("sin", "cos", "tan")):
+                return None
+            form = linear_form(part.argument)
+            opened = None if form is None else self._opened_form(form)
+            return Call(part.function, self.opened(part.argument) if opened is None else _written(opened))
+
+        return rewritten(expression, change)
 
     def arguments(self, claim: Claim) -> Iterator[Expression]:
         """Every angle under sin, cos and tan in a claim and in the abbreviations that it is written in."""
@@ -79,14 +74,8 @@ class Symbols:
 
     def occurring(self, expressions: Iterable[Expression]) -> set[str]:
         """The names that occur, those in abbreviations included."""
-        occurring_names: set[str] = set()
-        pending = [name for expression in expressions for name in names(expression)]
-        while pending:
-            name = pending.pop()
-            if name not in occurring_names:
-                occurring_names.add(name)
-                pending += names(self.values[name]) if name in self.values else ()
-        return occurring_names
+        needs = {name: names(value) for name, value in self.values.items()}
+        return reached(needs, (name for expression in expressions for name in names(expression)))
 
     def lowering(self, algebra: Any, environment: Mapping[str, Any], required: set[str]) -> Lowering:
         """Values for expressions, in an algebra, with those of the wanted abbreviations."""
@@ -122,10 +111,6 @@ class Symbols:
         # No abbreviation holds the variable: it is no name outside its claim.
         known = {name: lower(Name(name)) for name in names(opened) if name != claim.variable}
         return Lowering(scene.ring, known | {claim.variable: scene.ring.generator("time", "t")})(opened)
-
-
-#: Whose abbreviations are asked for again and again, claim by claim.
-_REMEMBERED: WeakKeyDictionary[Any, Symbols] = WeakKeyDictionary()
 
 
 class _Values(dict[str, Any]):

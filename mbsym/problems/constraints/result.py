@@ -108,6 +108,8 @@ class Constraints(Shown):
     ``coordinates``, ``dependent`` and ``free`` are names of speeds, velocity and J are in them, f is in the positions.
     """
 
+    counted = ("jacobian", "velocity", "acceleration")
+
     names: tuple[RowName, ...]
     position: tuple[Formula | None, ...]
     velocity: Column
@@ -163,8 +165,3 @@ class Constraints(Shown):
     def free(self) -> tuple[str, ...]:
         """The coordinates whose velocities are independent."""
         return tuple(name for name in self.coordinates if name not in self.dependent)
-
-    @property
-    def terms(self) -> int:
-        """Terms of its formulas."""
-        return self.jacobian.terms + sum(x.terms for x in (*self.velocity, *self.acceleration))

@@ -179,11 +179,6 @@ class NormalForms(Shown):
     linear: bool = False
     linear_at_values: bool = False
 
-    @property
-    def terms(self) -> int:
-        """None are counted: the statements are short."""
-        return 0
-
 
 # The second route to a normal form: its transformation written out, and substituted.
 #

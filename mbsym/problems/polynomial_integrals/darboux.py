@@ -19,13 +19,14 @@ cofactors at points of rest; W. Hess, Math. Ann. 37 (1890), for the heavy rigid 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from operator import add
 from random import Random
-from typing import Any
+from typing import Any, TypeVar
 
 from flint import fmpq_mpoly_ctx, nmod_poly
 
@@ -287,16 +288,21 @@ def rest_factors(field: PolynomialField, power: Exponents) -> list[RestFactor] |
     return factors
 
 
-def _sums(means: Sequence[Any], most: int, zero: Any) -> list[Any]:
-    """All sums of at most so many of them, each once."""
+T = TypeVar("T")
+
+
+def _sums(
+    values: Sequence[T], most: int, zero: T, bound: int = MOST_COFACTORS, join: Callable[[T, T], T] = add
+) -> list[T]:
+    """All sums of at most so many of them, each once, until there are more than ``bound``."""
     sums, last = [zero], [zero]
     for _ in range(most):
-        new: list[Any] = []
-        for total in (x + mean for x in last for mean in means):
+        new: list[T] = []
+        for total in (join(x, y) for x in last for y in values):
             if total not in sums and total not in new:
                 new.append(total)
         sums, last = sums + new, new
-        if not new or len(sums) > MOST_COFACTORS:
+        if not new or len(sums) > bound:
             break
     return sums
 
@@ -506,7 +512,8 @@ class _Drops:
         orbits = []
         for weight in range(1, self.usual.degree + 1):
             most = weight // min(grading.weights)
-            choices = [self._sums(eigenvalues, most) for eigenvalues in listed]
+            zero: Value = (self.field.context.constant(0), ())
+            choices = [_sums(eigenvalues, most, zero, MOST_SUMS, _added) for eigenvalues in listed]
             number = 1
             for choice in choices:
                 number *= len(choice)
@@ -548,20 +555,6 @@ class _Drops:
         if delta not in self.discriminants:
             self.discriminants.append(delta)
         return self.discriminants.index(delta)
-
-    def _sums(self, values: Sequence[Value], most: int) -> list[Value]:
-        """All sums of at most so many of them, each once."""
-        zero: Value = (self.field.context.constant(0), ())
-        sums, last = [zero], [zero]
-        for _ in range(most):
-            new: list[Value] = []
-            for total in (_added(x, y) for x in last for y in values):
-                if total not in sums and total not in new:
-                    new.append(total)
-            sums, last = sums + new, new
-            if not new or len(sums) > MOST_SUMS:
-                break
-        return sums
 
     def _orbits(
         self, weight: int, powers: Sequence[tuple[int, ...]], choices: Sequence[Sequence[Value]]

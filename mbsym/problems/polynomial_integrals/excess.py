@@ -223,21 +223,27 @@ class Excess:
 
     def build(self, block: Block) -> Build:
         """The columns of the matrix whose kernel the integrals of a block are."""
-        weights = self.usual.grading.weights
 
         def images(there: ModularField) -> list[Any]:
-            if block.level is None:
-                columns = list(monomials(weights, block.weight))
-                self.columns += len(columns)
+            columns, zero = self._monomials(there, block)
+            if zero is None:
                 return [there.derivative(m) for m in columns]
-            zero = self._zero(there, block.level)
             if not zero.terms:
                 return []
-            columns = standard(weights, block.weight, zero)
-            self.columns += len(columns)
             return images_on(there, columns, cofactors(self.usual, block.weight, zero), zero.terms)
 
         return images
+
+    def _monomials(self, there: ModularField, block: Block) -> tuple[list[Any], Any]:
+        """Those of a block, and V on its level: None where it has none; without terms there are no monomials."""
+        weights, zero = self.usual.grading.weights, None
+        if block.level is None:
+            columns = list(monomials(weights, block.weight))
+        else:
+            zero = self._zero(there, block.level)
+            columns = standard(weights, block.weight, zero) if zero.terms else []
+        self.columns += len(columns)
+        return columns, zero
 
     def extra(self, block: Block) -> int:
         """The degree in the parameters of what multiplies the cofactor."""
@@ -249,16 +255,11 @@ class Excess:
 
     def dimension(self, there: ModularField, block: Block) -> int:
         """The dimension of the kernel at these parameters."""
-        weights = self.usual.grading.weights
-        if block.level is None:
-            columns = list(monomials(weights, block.weight))
-            self.columns += len(columns)
+        columns, zero = self._monomials(there, block)
+        if zero is None:
             return len(kernel(there, columns, False))
-        zero = self._zero(there, block.level)
         if not zero.terms:
             return 0
-        columns = standard(weights, block.weight, zero)
-        self.columns += len(columns)
         return len(kernel_on(there, columns, cofactors(self.usual, block.weight, zero), zero))
 
     @cached_property
@@ -269,24 +270,16 @@ class Excess:
 
     def at(self, there: ModularField, block: Block) -> int:
         """The dimension of the kernel less that of the products, at these parameters."""
-        weights, usual = self.usual.grading.weights, self.usual.generators
-        if block.level is None:
-            columns = list(monomials(weights, block.weight))
-            pairs = [(generator.weight, there.terms(generator.polynomial)) for generator in usual]
-            spanned = products(pairs, block.weight, True, there.prime, len(weights), lambda terms: terms)
-            self.columns += len(columns)
-            return self.dimension(there, block) - len(echelon(spanned, columns, there.prime)[0])
-        zero = self._zero(there, block.level)
-        if not zero.terms:  # at these parameters the integral is zero everywhere: it has no levels
+        columns, zero = self._monomials(there, block)
+        if zero is not None and not zero.terms:  # there the integral is zero everywhere: it has no levels
             return 0
-        columns = standard(weights, block.weight, zero)
         pairs = [(weight, there.terms(f)) for weight, f in self._known(block)]
 
         def reduce(terms: Terms) -> Terms:
-            return remainder(terms, zero.terms, there.prime)
+            return terms if zero is None else remainder(terms, zero.terms, there.prime)
 
-        spanned = products(pairs, block.weight, True, there.prime, len(weights), reduce)
-        self.columns += len(columns)
+        count = len(self.usual.grading.weights)
+        spanned = products(pairs, block.weight, True, there.prime, count, reduce)
         return self.dimension(there, block) - len(echelon(list(map(reduce, spanned)), columns, there.prime)[0])
 
     def build_products(self, block: Block) -> tuple[Build, int]:

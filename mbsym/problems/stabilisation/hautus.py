@@ -22,7 +22,7 @@ from typing import Any
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import _Variable, determinant, resultant
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import common_divisor, irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
@@ -57,9 +57,7 @@ def rank_of(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows,
     minors = _maximal_minors(rows, variable)
     if not minors:
         return Rank(False, Certainty.PROVED, (), None, "the inputs do not even enter")
-    common = minors[0]
-    for minor in minors[1:]:
-        common = common.gcd(minor)
+    common = common_divisor(minors)
     in_lambda, free = _split(common, variable)
     if not rest:
         in_lambda = [x for x in in_lambda if x != variable.large.gen(variable.index)]
@@ -179,9 +177,7 @@ def _locus(
         values = _in_t(base, others, whole)
     except TooLargeError:
         return None
-    common = values[0]
-    for value in values[1:]:
-        common = common.gcd(value)
+    common = common_divisor(values)
     for factor in _open_factors(common, whole.known):
         lost.setdefault(str(factor), factor)
     # What vanishes together, beside what is lost anyhow; numbers, powers and positive factors say nothing of where.

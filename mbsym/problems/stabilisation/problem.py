@@ -15,10 +15,11 @@ from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
-from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.evaluate import Carrier, at_rationals
+from mbsym.algebra.factors import common_divisor
 from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError, message_of
 from mbsym.algebra.matrices import added, dot
-from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.point import Balls
 from mbsym.algebra.rationals import ball
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
@@ -104,9 +105,8 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
 
 def on_motion(scene: Scene[Any], equilibrium: Equilibrium, values: Mapping[str, Any]) -> bool:
     """Whether the values are those at which the motion exists: exactly."""
-    algebra = Rationals({}, {})
-    exact = {name: algebra.number(value) for name, value in values.items() if isinstance(value, Fraction)}
-    carry = Carrier(scene.ring, algebra, exact)
+    carry = at_rationals(scene.ring, values)
+    exact = carry.environment
     try:
         return all(name in exact and carry(formula.polynomial) == exact[name] for name, formula in equilibrium.solved)
     except NOT_THERE:
@@ -149,9 +149,7 @@ def enclosed_at(scene: Scene[Any], linear: Linearisation, values: Mapping[str, A
 
 
 def _numbers(scene: Scene[Any], matrix: Matrix, values: Mapping[str, Any]) -> Any | None:
-    algebra = Rationals({}, {})
-    exact = {name: algebra.number(value) for name, value in values.items() if isinstance(value, Fraction)}
-    carry = Carrier(scene.ring, algebra, exact)
+    carry = at_rationals(scene.ring, values)
     height, width = matrix.shape
     try:
         return fmpq_mat(height, width, [carry(x) for row in matrix.polynomials for x in row])
@@ -269,9 +267,7 @@ def _undamped(
 
 
 def _primitive(vector: Sequence[Any]) -> list[Any]:
-    common = vector[0]
-    for x in vector[1:]:
-        common = common.gcd(x)
+    common = common_divisor(vector)
     return [divmod(x, common)[0] for x in vector] if common != 0 else list(vector)
 
 

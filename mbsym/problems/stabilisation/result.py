@@ -166,8 +166,3 @@ class Stabilisation(Shown):
     left_out: tuple[str, ...] = ()
     nonholonomic: bool = False
     circulatory: tuple[str, ...] = ()
-
-    @property
-    def terms(self) -> int:
-        """None are counted: the statements are short."""
-        return 0

@@ -14,7 +14,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
-from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.evaluate import Carrier, at_rationals
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.matrices import added
@@ -56,6 +56,8 @@ class SubsystemStability(Shown):
     the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
     ``system`` with what is ``known`` is what was judged.
     """
+
+    counted = ("characteristic",)
 
     coordinates: tuple[str, ...]
     matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
@@ -149,6 +151,8 @@ class Stability(Shown):
     where terms of higher order decide it.  ``enclosed``: there enclosures decide, no exact numbers.
     """
 
+    counted = ("subsystems",)
+
     subsystems: tuple[SubsystemStability, ...]
     verdict: Verdict
     numerical: Verdict | None
@@ -156,11 +160,6 @@ class Stability(Shown):
     presumed: Column = ()
     before_higher_order: Verdict | None = None
     enclosed: bool = False
-
-    @property
-    def terms(self) -> int:
-        """Terms of the characteristic polynomials."""
-        return sum(x.terms for part in self.subsystems for x in part.characteristic)
 
 
 def because(found: Stability, code: Because, *data: object) -> Stability:
@@ -258,11 +257,16 @@ def matrices_at(
 
     What vanishes identically is exactly 0.
     """
+    return [_balls(scene, block, values) for block in blocks_of(scene, linear, coordinates, basis)]
+
+
+def blocks_of(
+    scene: Scene, linear: Linearisation, coordinates: Sequence[str], basis: Basis | None = None
+) -> list[list[list[Polynomial]]]:
+    """The blocks of M, D, G, K, N that belong to some coordinates, or to a basis."""
     at = [linear.coordinates.index(name) for name in coordinates]
     blocks = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in linear.matrices]
-    if basis is not None:
-        blocks = [basis.congruent(scene.ring, block) for block in blocks]
-    return [_balls(scene, block, values) for block in blocks]
+    return blocks if basis is None else [basis.congruent(scene.ring, block) for block in blocks]
 
 
 def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
@@ -734,11 +738,8 @@ def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] 
 
 def _value_of(scene: Scene, x: Polynomial, values: Mapping[str, Any]) -> Any:
     """A formula in parameters, exactly where it is rational, else enclosed.  Raises Failure where one has no value."""
-    carried = Rationals({}, {})
-    exact = {name: carried.number(value) for name, value in values.items() if isinstance(value, Fraction)}
     try:
-        exact_value = Carrier(scene.ring, carried, exact)(x)
-        return rationals.fraction(exact_value)
+        return rationals.fraction(at_rationals(scene.ring, values)(x))
     except Failure:
         balls = {"pi": arb.pi()} | {name: arb(_number(value)) for name, value in values.items()}
         return Carrier(scene.ring, Balls(balls), balls)(x)
@@ -791,9 +792,7 @@ def _point(
     scene: Scene, ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], values: Mapping[str, Any]
 ) -> dict[int, Fraction] | None:
     """Exact values of the generators that occur in the matrices; None if one of them is irrational."""
-    numbers = Rationals({}, {})
-    environment = {name: numbers.number(value) for name, value in values.items() if isinstance(value, Fraction)}
-    carry = Carrier(scene.ring, numbers, environment)
+    carry = at_rationals(scene.ring, values)
     used = occurring(x for matrix in rows for row in matrix for x in row)
     try:
         return {index: rationals.fraction(carry(in_declared(scene, ring, index)[1])) for index in used}

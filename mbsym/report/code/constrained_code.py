@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
+from mbsym.algebra.remembered import remembered
 from mbsym.analysis.stages import Unavailable
 from mbsym.mechanics.constraints.dependence import counted_anew
 from mbsym.mechanics.constraints.dynamics import Chosen, ConstrainedDynamics, Kept, constrained_dynamics
@@ -76,20 +76,15 @@ class Tied:
         return [self.code.jacobian[i] for i in self.rows]
 
 
-#: Several files are written of one analysis, from the same programs.
-_TIED: WeakKeyDictionary[Analysis, Tied | str] = WeakKeyDictionary()
-
-
+@remembered  # several files are written of one analysis, from the same programs
 def tied_of(analysis: Analysis) -> Tied | str:
     """The rows and the equations with them; or the reason why there are none."""
-    if analysis not in _TIED:
-        try:
-            _TIED[analysis] = _tied(analysis)
-        except Unavailable as missing:
-            _TIED[analysis] = missing.failure.reason
-        except Failure as reason:
-            _TIED[analysis] = str(reason)
-    return _TIED[analysis]
+    try:
+        return _tied(analysis)
+    except Unavailable as missing:
+        return missing.failure.reason
+    except Failure as reason:
+        return str(reason)
 
 
 def _tied(analysis: Analysis) -> Tied:

@@ -10,7 +10,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.table import Tabulated
-from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply, names, substitute
+from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply, names, reached, substitute
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.mechanics.variables import program_environment
@@ -260,9 +260,10 @@ def parameters_of(system: System, writer: Functions) -> list[Value]:
     related = {item.name: item.value for item in system.relations}
     related |= {p.name: p.value for p in system.parameters if p.name not in related and p.value and _made(p.value)}
     values = []
+    needed = {name: names(value) for name, value in related.items()}
     for item in system.parameters:
         written, needs = "", set[str]()
-        if item.name in related and not _circular(item.name, related):
+        if item.name in related and item.name not in reached(needed, needed[item.name]):
             with suppress(Failure):  # a power that no program has: then its number has to do
                 written, needs = writer.expression(related[item.name]), names(related[item.name])
         if not written and item.value is not None and not _made(item.value):
@@ -276,18 +277,6 @@ def parameters_of(system: System, writer: Functions) -> list[Value]:
 def _made(value: Expression) -> bool:
     """Whether it is made of other parameters."""
     return bool(names(value) - {"pi"})
-
-
-def _circular(name: str, related: dict[str, Expression]) -> bool:
-    seen: set[str] = set()
-    pending = [name]
-    while pending:
-        for other in names(related.get(pending.pop(), ZERO)) - seen:
-            if other == name:
-                return True
-            seen.add(other)
-            pending.append(other)
-    return False
 
 
 def ordered(parameters: Sequence[Value]) -> tuple[Value, ...]:

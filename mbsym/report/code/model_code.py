@@ -13,13 +13,13 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
+from mbsym.algebra.remembered import remembered
 from mbsym.formulas.names import injective
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import (
@@ -109,24 +109,15 @@ class Part:
     further: bool = False
 
 
-#: Several files are written of one analysis, one after the other, from the same programs.
-_SOLVED: WeakKeyDictionary[Analysis, Solved] = WeakKeyDictionary()
-
-
-def solved(analysis: Analysis) -> Solved:
-    """Accelerations and their derivatives, computed when they are first asked for."""
-    if analysis not in _SOLVED:
-        _SOLVED[analysis] = _solved(analysis)
-    return _SOLVED[analysis]
-
-
 def programs_of(analysis: Analysis) -> tuple[Programs | None, str]:
     """M, f and the energy as a program, of the open tree where there are constraints; or why there is none."""
     tied = tied_of(analysis)
     return (None, tied) if isinstance(tied, str) else (tied.code.tree, "")
 
 
-def _solved(analysis: Analysis) -> Solved:
+@remembered  # several files are written of one analysis, one after the other, from the same programs
+def solved(analysis: Analysis) -> Solved:
+    """Accelerations and their derivatives, computed when they are first asked for."""
     tied = tied_of(analysis)
     if isinstance(tied, str):
         return Solved(None, "", None, "")

@@ -16,11 +16,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
+from mbsym.algebra.remembered import remembered
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import Articulation, articulation
@@ -116,18 +116,9 @@ def bodies(dynamics: NamedDynamics, writer: Functions, plain: Callable[[str], st
     )
 
 
-#: Several files are written of one analysis, one after the other.
-_FOUND: WeakKeyDictionary[Analysis, NamedDynamics] = WeakKeyDictionary()
-
-
+@remembered  # several files are written of one analysis, one after the other
 def named_dynamics(analysis: Analysis) -> NamedDynamics:
     """All of it, computed when it is first asked for; what there is no program for is None."""
-    if analysis not in _FOUND:
-        _FOUND[analysis] = _named_dynamics(analysis)
-    return _FOUND[analysis]
-
-
-def _named_dynamics(analysis: Analysis) -> NamedDynamics:
     system, ring = analysis.system, analysis.ring
     computeds: dict[str, Computed | None] = {}
     makers: dict[str, Callable[[], Computed | None]] = {

@@ -60,30 +60,22 @@ class Groups(Head, frozen=True, kw_only=True):
     unused: Annotated[int, "further scalings, for which no parameter is left that is known to be positive"]
 
 
-Kind = Annotated[str, words(*KINDS), "mass m, first moment h = m c, or a component of the tensor about the origin"]
-Body = Annotated[str, "the body, in whose axes it is, about its connection point"]
-
-
 class Parameter(Part, frozen=True):
     """one of a body's ten parameters"""
 
-    body: Body
-    kind: Kind
+    body: Annotated[str, "the body, in whose axes it is, about its connection point"]
+    kind: Annotated[str, words(*KINDS), "mass m, first moment h = m c, or a component of the tensor about the origin"]
 
 
-class Share(Part, frozen=True):
+class Share(Parameter, frozen=True):
     """one that is added, times a coefficient"""
 
-    body: Body
-    kind: Kind
     coefficient: Annotated[str, "in Python syntax"]
 
 
-class Base(Part, frozen=True):
+class Base(Parameter, frozen=True):
     """a parameter and what is added to it: the motion tells this sum, and nothing of its parts"""
 
-    body: Body
-    kind: Kind
     others: Annotated[list[Share], "what is added"]
     value: Annotated[str, "the sum for the description's bodies, in Python syntax"]
 

@@ -9,10 +9,6 @@ from msgspec import UNSET, UnsetType
 from mbsym.report.documents.base import ASIDE, From, Hashed, Part
 
 Seconds = Annotated[float, "median processor seconds of the integration on this machine", ASIDE, From("seconds")]
-Method = Annotated[str, "its method", From("method.traits.name")]
-Arithmetic = Annotated[str, "its arithmetic", From("scalar")]
-Tolerance = Annotated[float | None, "its tolerance", From("setting.tolerance")]
-Step = Annotated[float | None, "its step", From("setting.step")]
 Trouble = Annotated[str | UnsetType, "why it has no error", From("trouble")]
 
 
@@ -23,13 +19,18 @@ class Drift(Part, frozen=True):
     velocities: Annotated[float | None, "of those on velocities"]
 
 
-class Run(Part, frozen=True):
+class Setting(Part, frozen=True):
+    """the setting of least time among those measured that reach the target; null where none does"""
+
+    method: Annotated[str, "its method", From("method.traits.name")]
+    arithmetic: Annotated[str, "its arithmetic", From("scalar")]
+    tolerance: Annotated[float | None, "its tolerance", From("setting.tolerance")]
+    step: Annotated[float | None, "its step", From("setting.step")]
+
+
+class Run(Setting, frozen=True):
     """one trial: a method in an arithmetic with a tolerance or a step"""
 
-    method: Method
-    arithmetic: Arithmetic
-    tolerance: Tolerance
-    step: Step
     error: Annotated[
         float | None,
         "largest difference from the reference over quantities and times, relative to their sizes in the whole motion",
@@ -80,15 +81,6 @@ class NotUsed(Part, frozen=True):
 
     method: Annotated[str, "the method"]
     why: Annotated[str, "why"]
-
-
-class Setting(Part, frozen=True):
-    """the setting of least time among those measured that reach the target; null where none does"""
-
-    method: Method
-    arithmetic: Arithmetic
-    tolerance: Tolerance
-    step: Step
 
 
 class Tradeoff(Hashed, frozen=True, kw_only=True):

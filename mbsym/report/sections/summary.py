@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import occurring, rational_ratio
+from mbsym.algebra.remembered import remembered
 from mbsym.expressions.message import Counted, worded
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
@@ -89,8 +89,6 @@ MOST_DRAWN = 6
 #: Conditions, each with the key of the formula that shows it.
 Keys = Sequence[tuple[Statement, str]]
 
-_DRAWN: WeakKeyDictionary[Analysis, tuple[Drawing, ...]] = WeakKeyDictionary()
-
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
@@ -99,11 +97,10 @@ def content(results: Results) -> Iterator[Block]:
     yield Beside(names_in(results.analysis.claims, results.system), (finding(results),))
 
 
+@remembered
 def drawing(analysis: Analysis) -> tuple[Drawing, ...]:
     """The system as it is drawn, if anything can be, and in which position; made once for all media."""
-    if analysis not in _DRAWN:
-        _DRAWN[analysis] = tuple(_drawing(analysis.system))
-    return _DRAWN[analysis]
+    return tuple(_drawing(analysis.system))
 
 
 def _drawing(system: System) -> Iterator[Drawing]:

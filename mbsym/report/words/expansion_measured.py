@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeVar
-from weakref import WeakKeyDictionary
 
 from mbsym.algebra.failures import Failure, message_of
+from mbsym.algebra.remembered import remembered
 from mbsym.analysis.constrained import in_free_coordinates
 
 if TYPE_CHECKING:
@@ -32,10 +32,6 @@ VALID = 0.01
 FAR = 0.5
 #: One that shrinks faster than expected from so far on was none of an averaged motion.
 GONE = 100
-
-_FLOWS: WeakKeyDictionary[SmallParameters, Measured | str] = WeakKeyDictionary()
-_WAVES: WeakKeyDictionary[SmallParameters, MeasuredOrders | str] = WeakKeyDictionary()
-_AVERAGES: WeakKeyDictionary[SmallParameters, tuple[JudgedAverage, ...]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True)
@@ -69,12 +65,11 @@ def contradicts(measurement: Measured | str) -> bool:
     return slow or away or gone
 
 
+@remembered
 def flow_measured(small_parameters: SmallParameters, system: System) -> Measured | str:
     """The error of the flow on the slow manifold; why it was not measured."""
-    if small_parameters not in _FLOWS:
-        assert small_parameters.slow is not None
-        _FLOWS[small_parameters] = measured_or_why(in_free_coordinates(system), small_parameters.slow)
-    return _FLOWS[small_parameters]
+    assert small_parameters.slow is not None
+    return measured_or_why(in_free_coordinates(system), small_parameters.slow)
 
 
 def measured_or_why(
@@ -86,12 +81,11 @@ def measured_or_why(
     return _or_why(lambda: measured(system, expansion, time, values))
 
 
+@remembered
 def oscillation_measured(small_parameters: SmallParameters, system: System) -> MeasuredOrders | str:
     """The errors of the periodic solution at parts of the small parameter; why they were not measured."""
-    if small_parameters not in _WAVES:
-        assert small_parameters.oscillation is not None
-        _WAVES[small_parameters] = orders_or_why(in_free_coordinates(system), small_parameters.oscillation)
-    return _WAVES[small_parameters]
+    assert small_parameters.oscillation is not None
+    return orders_or_why(in_free_coordinates(system), small_parameters.oscillation)
 
 
 def orders_or_why(
@@ -103,11 +97,10 @@ def orders_or_why(
     return _or_why(lambda: measured_orders(system, solution, values))
 
 
+@remembered
 def averages(small_parameters: SmallParameters, system: System) -> tuple[JudgedAverage, ...]:
     """All effective potentials, each held against the motion itself: what any output shows of them."""
-    if small_parameters not in _AVERAGES:
-        _AVERAGES[small_parameters] = tuple(_judged(small_parameters, in_free_coordinates(system)))
-    return _AVERAGES[small_parameters]
+    return tuple(_judged(small_parameters, in_free_coordinates(system)))
 
 
 def _judged(small_parameters: SmallParameters, system: System) -> Iterator[JudgedAverage]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import zip_longest
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.tower import Element
 from mbsym.expressions.message import worded
@@ -157,14 +157,20 @@ def opening(solution: Oscillating) -> Iterator[Said]:
 
 def coefficients(solution: Oscillating) -> Iterator[Coefficient]:
     """Of all variables, then of the rate of the phase; those that are zero are left out."""
+    return _coefficients(solution, solution.wave, solution.formula)
+
+
+def _coefficients(
+    solution: Oscillating, wave: Callable[[Harmonics], Any], rate: Callable[[Element], Any]
+) -> Iterator[Coefficient]:
     oscillation = solution.oscillation
     for name, series in zip(oscillation.names, oscillation.series, strict=True):
         plain = without_velocity(name) if name in solution.velocities else name
         for order, harmonics in enumerate(series):
             if not harmonics.is_zero:
-                yield Coefficient(plain, plain != name, order, solution.wave(harmonics))
+                yield Coefficient(plain, plain != name, order, wave(harmonics))
     for phase, order, x in _rates(solution):
-        yield Coefficient(phase, True, order, solution.formula(x))
+        yield Coefficient(phase, True, order, rate(x))
 
 
 def _rates(solution: Oscillating) -> Iterator[tuple[str, int, Element]]:
@@ -188,15 +194,11 @@ def as_function(solution: Oscillating) -> Sums:
 
 def collected(solution: Oscillating) -> Iterator[Relation]:
     """The same for people: factors that divide several coefficients have letters (``denominators``)."""
-    oscillation = solution.oscillation
-    for name, series in zip(oscillation.names, oscillation.series, strict=True):
-        plain = without_velocity(name) if name in solution.velocities else name
-        for order, harmonics in enumerate(series):
-            if not harmonics.is_zero:
-                yield Coefficient(plain, plain != name, order, solution.shortest(harmonics)).equation
-    for phase, order, x in _rates(solution):
-        value = solution.shortest(Harmonics.constant(oscillation.tower, x))
-        yield Coefficient(phase, True, order, value).equation
+
+    def constant(x: Element) -> Any:
+        return solution.shortest(Harmonics.constant(solution.oscillation.tower, x))
+
+    return (each.equation for each in _coefficients(solution, solution.shortest, constant))
 
 
 def denominators(solution: Oscillating, equations: Iterable[Relation]) -> Definitions | None:

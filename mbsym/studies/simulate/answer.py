@@ -15,7 +15,7 @@ from mbsym.report.unit_text import pretty
 from mbsym.studies.closing import not_closed
 from mbsym.studies.simulate.files import ensemble_files, motion_files
 from mbsym.studies.simulate.fitting import Many, Motion, Planned
-from mbsym.studies.study import BEFORE, Answer, Asked, Exit, Line, Refusal, heading, line
+from mbsym.studies.study import BEFORE, NOTHING_WRITTEN, Answer, Asked, Exit, Line, Refusal, heading, line
 from mbsym.studies.study import refused as refused_because
 
 if TYPE_CHECKING:
@@ -201,7 +201,7 @@ def refused(error: Exception, context: Asked, request: Command) -> Refusal | Non
     from mbsym.numerics.methods.interface import Breakdown
 
     say = Language(context.motion.system.language).say
-    nothing = say(Message("nothing was written."))
+    nothing = say(NOTHING_WRITTEN)
     if isinstance(error, MemoryError):
         many = "out of memory; ask for fewer members"
         return Refusal(Message(many if request.vary else "out of memory; ask for fewer --samples"))
