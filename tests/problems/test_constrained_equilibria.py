@@ -661,3 +661,25 @@ def test_where_something_turns_not_every_position_is_an_equilibrium(given: bool)
     assert [x.value for x in near.values] == [-0.5, 0]
     assert near.verdict.word is Word.UNSTABLE
     assert listed(text, w=0).everywhere
+
+
+LOADED_BALL = """
+mbsym: 1
+name: B
+bodies:
+  - {name: centre, attached to: 0, connection point: [x, y, 1/2], coordinates: [x, y], mass: 0}
+  - {name: ball, attached to: centre, rotation: {axes: AXES, angles: [a, b, c]}, mass: 2, mass centre: [CENTRE],
+     inertia about: mass centre, inertia: [1/5, 1/4, 3/10]}
+loads: [{uniform gravity: {vector: [0, 0, -9]}}]
+constraints: [{rolling: {body: ball, point: [0, 0, -1/2], axes: centre, on: ground}}]
+"""
+
+
+@pytest.mark.parametrize(("axes", "centre"), [("[1, 2, 3]", "0, 0, -1/10"), ("[3, 1, 2]", "0, -1/10, 0")])
+def test_a_loaded_ball_has_two_rests_whatever_it_is_turned_by_about_the_vertical(axes: str, centre: str) -> None:
+    """The load below or above; turned by any angle about it the same rest is told by (a, b) and (a + pi, pi - b)."""
+    found = listed(LOADED_BALL.replace("AXES", axes).replace("CENTRE", centre))
+    assert found.complete
+    below, above = found.equilibria
+    assert below.verdict.word is Word.STABLE_BUT_CYCLIC
+    assert above.verdict.word is Word.UNSTABLE
