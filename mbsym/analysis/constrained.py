@@ -85,8 +85,8 @@ def on_a_plane(analysis: Analysis) -> System | None:
     if system.speeds or not system.constraints or not all(map(is_holonomic, system.constraints)):
         return None
     for x in (x.polynomial for x in analysis.reduced.about.assumed):
-        constant = not ring.dependencies(x, system.parameter_names) and ring.is_zero(x) is False
-        if not (constant or analysis.signs.never_zero(x)):
+        constant = not any(ring.generators[k].name in system.parameter_names for k in ring.held([x]))
+        if not ((constant and ring.is_zero(x) is False) or analysis.signs.never_zero(x)):
             return None
     place = unperturbed_with(analysis.scene, relations(analysis.scene))
     rows = said_rows(analysis.scene)
