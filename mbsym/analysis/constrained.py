@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.rationals import fraction
 from mbsym.expressions.tree import (
     ZERO,
     Expression,
@@ -25,7 +26,7 @@ from mbsym.expressions.tree import (
     sign_by_structure,
     subtract,
 )
-from mbsym.model.constraints import Relation
+from mbsym.model.constraints import Relation, is_holonomic
 from mbsym.model.substitution import told_by, without_explicit_relations
 from mbsym.model.system import Prescribed
 from mbsym.problems import equations, perturbation
@@ -65,6 +66,43 @@ def in_free_coordinates(system: System) -> System:
         return free
     tied = free.constraints and said_rows(over_ring(free, ring_of(free)))
     return free if tied else replace(free, constraints=())  # rows that say 0 = 0 followed from what is put in
+
+
+def on_a_plane(analysis: Analysis) -> System | None:
+    """The motions near a rest q_0 in fewer coordinates, where they stay on a plane; None where that is not shown.
+
+    Holonomic rows f(q) = 0 of constant rank at q_0 leave a manifold.  It is the plane  J(q_0) (q - q_0) = 0  where f
+    vanishes on that plane: in a parallelogram, say, q_2 - q_2(0) = -(q_1 - q_1(0)).  J(q_0) has to have a kernel of
+    numbers.
+    """
+    from mbsym.algebra.kernel import kernel
+    from mbsym.mechanics.constraints.rows import said_rows
+    from mbsym.mechanics.kinematics import over_ring
+    from mbsym.mechanics.motion import motion_values, relations, unperturbed_with
+    from mbsym.mechanics.variables import ring_of
+
+    system, ring = analysis.system, analysis.ring
+    if system.speeds or not system.constraints or not all(map(is_holonomic, system.constraints)):
+        return None
+    for x in (x.polynomial for x in analysis.reduced.about.assumed):
+        constant = not any(ring.generators[k].name in system.parameter_names for k in ring.held([x]))
+        if not ((constant and ring.is_zero(x) is False) or analysis.signs.never_zero(x)):
+            return None
+    place = unperturbed_with(analysis.scene, relations(analysis.scene))
+    rows = said_rows(analysis.scene)
+    found = kernel(ring, *([ring.reduce(ring.substitute(x, place)) for x in row.partials] for row in rows))
+    rational = all(x.is_constant() for vector in found for x in vector.values())
+    if not (found and rational and len(found) == len(analysis.reduced.about.about)):
+        return None
+    names, start, plane = system.coordinates, motion_values(system), system
+    free = {max(vector): {k: fraction(x.leading_coefficient()) for k, x in vector.items()} for vector in found}
+    for i in (k for k in range(len(names)) if k not in free):
+        value = start[names[i]][0]
+        for k, vector in free.items():
+            share = number(vector.get(i, Fraction(0)) / vector[k])
+            value = add(value, multiply(share, subtract(Name(names[k]), start[names[k]][0])))
+        plane = told_by(plane, names[i], value)
+    return None if said_rows(over_ring(plane, ring_of(plane))) else replace(plane, constraints=())
 
 
 def with_runs_prescribed(system: System) -> System:

@@ -30,7 +30,7 @@ from mbsym.algebra.parts import installed
 from mbsym.algebra.rationals import fraction
 from mbsym.analysis import families, higher
 from mbsym.analysis.approximation import refuse_unsolved
-from mbsym.analysis.constrained import in_free_coordinates, with_runs_prescribed
+from mbsym.analysis.constrained import in_free_coordinates, on_a_plane, with_runs_prescribed
 from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
@@ -295,9 +295,19 @@ class Judge:
         of = self.analysis
         plain = self._displaced if self._displaces and not of.system.constraints else None
         system = with_runs_prescribed(in_free_coordinates(of.system)) if of.system.constraints else plain
+        if of.system.constraints and system is not None and system.constraints:
+            system = self._plane
         if system is None or system.constraints:
             return None
         return Judge(type(of)(system, (), of.terms, suggests=False), displaces=bool(of.system.constraints))
+
+    @cached_property
+    def _plane(self) -> System | None:
+        """In coordinates of a plane that the constraints leave near a rest, if they do."""
+        try:
+            return on_a_plane(self.analysis) if families.at_rest(self.analysis) else None
+        except (Failure, *NOT_THERE):
+            return None
 
     @property
     def _displaced(self) -> System | None:
@@ -341,7 +351,7 @@ class Judge:
             further = _unconditional(self._in_others) if values is None else self._in_others(values)
             drift = others.balance.ignorable if Flaw.CYCLIC in further.flawed else ()
             every = of.system.coordinates if Flaw.HERE in further.flawed else drift
-            rows = of.constraints.jacobian.polynomials
+            rows = of.constraints.jacobian.polynomials if self._plane is None else []
         except (Failure, *NOT_THERE):
             return verdict
         uneven = any(of.ring.dependencies(x, every) for row in rows for x in row)

@@ -36,7 +36,7 @@ from mbsym.mechanics.motion import relations
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.problem import ExactVerdicts, blocks_of
-from mbsym.problems.stability.verdict import Verdict, combine, displaced, off_the_leaf
+from mbsym.problems.stability.verdict import Verdict, displaced, off_the_leaf
 from mbsym.problems.stability.words import Word
 
 #: Boxes are halved so often at most, and there are so many of them at most.
@@ -239,7 +239,7 @@ class IrrationalSection:
         ranges = ((box.x0, box.x1), (box.y0, box.y1))
         apart = all(a > 0 or b < 0 for a, b in ranges)
         bounded = self.plain.law(tuple(sign(a) for a, _ in ranges)) if apart else self.plain.law.everywhere
-        return combine((self._judged(part, box, bounded) for part in self._systems), bounded)
+        return self.plain.whole((self._judged(part, box, bounded) for part in self._systems), bounded)
 
     def _judged(self, part: LinearSystem, box: Box, bounded: bool) -> Verdict:
         matrices = self._matrices(part, box)

@@ -56,7 +56,7 @@ from mbsym.problems.stability.exact import (
     verdict_over,
 )
 from mbsym.problems.stability.linear_form import LinearSystem, Matrix, is_zero, state_matrix
-from mbsym.problems.stability.verdict import Verdict, combine
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Because, Word
 
 # The exact verdict of problem 6 at an exact point of a section: on a curve, at a corner, at an end of an interval.
@@ -87,7 +87,7 @@ class ExactVerdicts:
         at, signs = _field(place), _signs(place)
         parts, one_energy = self.section.judged(signs)
         verdicts = [verdict_over(part, at) for part in parts]
-        verdict = combine((point_verdict.verdict for point_verdict in verdicts), one_energy)
+        verdict = self.section.whole((point_verdict.verdict for point_verdict in verdicts), one_energy)
         signature = [inertia(evaluated(part.K, at)) for part in parts]
         right: int | None = None
         real: int | None = None

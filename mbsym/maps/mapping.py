@@ -30,7 +30,7 @@ from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.check import Check, ExactVerdicts, beside, check
 from mbsym.maps.result import Cell, Ground, Lack, Map, Of, Shape
-from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, in_velocities, section
 from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
 from mbsym.problems.stability.exact import inertia
@@ -207,7 +207,7 @@ def nonlinear_in(analysis: Analysis, there: Section) -> Nonlinear | None:
     system, names = analysis.system, {axis.name for axis in there.axes}
     related = {item.name for item in system.relations} | {name for name, _ in analysis.equilibrium.solved}
     plain = {*system.parameter_names} - related == {*there.numbers, *names} - related
-    return Nonlinear(OneJudge(analysis), there) if plain and there.constant is None else None
+    return Nonlinear(OneJudge(in_velocities(analysis)), there) if plain and there.constant is None else None
 
 
 def with_nonlinear(diagram: Map, analysis: Analysis, watch: Watch) -> Map:

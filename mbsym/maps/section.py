@@ -12,7 +12,7 @@ rational point proves.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
@@ -26,18 +26,21 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis
+from mbsym.analysis.judge import Judge
 from mbsym.expressions.tree import names, reached
 from mbsym.maps.axis import Axis
 from mbsym.maps.images import Image, Images, Irrational, common_denominator
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.model.assumptions import RELATION_OF_SIGN, holds
+from mbsym.model.constraints import is_holonomic
 from mbsym.model.system import System, rational
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.stability.constant import Constant, constant_of, context_of
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.problem import Prepared, of_one_energy, prepared_parts
-from mbsym.problems.stability.words import Fact
+from mbsym.problems.stability.verdict import Verdict, combine, undecided
+from mbsym.problems.stability.words import Because, Fact, Word
 
 if TYPE_CHECKING:
     from mbsym.problems.dissipation import Balance
@@ -58,7 +61,8 @@ class Section:
     points alike.  ``undefined``: where one of these vanishes the formulas divide by zero, or the equations have another
     form; nothing is said there.  ``constant``: an irrational number, the last generator.  ``numbers``: what may be put
     in, by name, also from the description; ``told``: those that were asked for or stand in the matrices.  ``images``
-    does that with further formulas in parameters.
+    does that with further formulas in parameters.  ``general``: what the nonlinear system shows at all parameters of a
+    motion that the first approximation leaves open.
     """
 
     axes: tuple[Axis, ...]
@@ -72,6 +76,7 @@ class Section:
     told: Mapping[str, Fraction]
     images: Images
     constant: Constant | None = None
+    general: Verdict | None = None
 
     @property
     def asked(self) -> tuple[Polynomial, ...]:
@@ -103,6 +108,11 @@ class Section:
         if bounded == self.one_energy and all(part.of_one == of_one for part in self.parts):
             return self.parts, self.one_energy
         return tuple(replace(part, conservative=bounded, of_one=of_one) for part in self.parts), bounded
+
+    def whole(self, parts: Iterable[Verdict], one_energy: bool) -> Verdict:
+        """The verdict on the whole system where those on its parts are these."""
+        verdict = combine(parts, one_energy)
+        return verdict if self.general is None or not verdict.word.open else self.general
 
 
 class Law:
@@ -211,7 +221,21 @@ def _section(
         {name: value for name, value in numbers.items() if name in used or name in settings},
         images,
         constant,
+        _general(analysis),
     )
+
+
+def _general(analysis: Analysis) -> Verdict | None:
+    """What velocity constraints leave to the energy without them, at all parameters; None where that is nothing."""
+    if all(map(is_holonomic, analysis.system.constraints)):
+        return None
+    verdict = Judge(in_velocities(analysis)).for_all(undecided(Because.ORDER_DECIDES))
+    return None if verdict.word.open or verdict.word is Word.DEPENDS else verdict
+
+
+def in_velocities(analysis: Analysis) -> Analysis:
+    """The system in generalised velocities, in which motions are judged."""
+    return analysis.in_coordinates if analysis.system.speeds else analysis
 
 
 def unmade(
@@ -224,7 +248,8 @@ def unmade(
     images, numbers, parts, balance, law = _prepared(analysis, axes, settings, None)
     _motion_exists(analysis.equilibrium, images)
     names = tuple(part.coordinates for part in parts)
-    plain = Section(tuple(axes), images.context, (), names, law.everywhere, law, (), numbers, numbers, images)
+    none = (), names, law.everywhere, law, (), numbers, numbers, images
+    plain = Section(tuple(axes), images.context, *none, general=_general(analysis))
     return plain, tuple(part.at(balance) for part in parts)
 
 

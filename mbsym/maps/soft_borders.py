@@ -40,7 +40,7 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.higher import ignorable
 from mbsym.expressions.message import Told
 from mbsym.maps.images import Images
-from mbsym.maps.section import Section
+from mbsym.maps.section import Section, in_velocities
 from mbsym.problems.normal_forms.along import judged_enclosed
 from mbsym.problems.normal_forms.dissipative import state_field
 from mbsym.problems.normal_forms.exact import OnCurve, on_curve
@@ -122,7 +122,7 @@ class SoftBorders:
     """Decides points and arcs of a section; the expansion is formed when it is first needed."""
 
     def __init__(self, analysis: Analysis, section: Section) -> None:
-        self.analysis = analysis.in_coordinates if analysis.system.speeds else analysis
+        self.analysis = in_velocities(analysis)
         self.section = section
         self._along: dict[int, _Along | None] = {}
 

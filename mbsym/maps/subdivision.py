@@ -31,7 +31,7 @@ from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.nonholonomic import to_the_right
-from mbsym.problems.stability.verdict import Verdict, combine, concluded, exactly
+from mbsym.problems.stability.verdict import Verdict, concluded, exactly
 from mbsym.problems.stability.words import Because, Fact, Reason, Word
 
 Proved = TypeVar("Proved")
@@ -192,8 +192,8 @@ class ByEnclosures:
         else:
             parts, one_energy = self._section.judged([sign(a) for a, _ in ranges])
         pairs = zip(parts, self._polynomials, strict=True)
-        verdicts = (_enclosed(part, polynomial, box) for part, polynomial in pairs)
-        return combine((exactly(x) if part.exact else x for x, part in zip(verdicts, parts, strict=True)), one_energy)
+        verdicts = ((part, _enclosed(part, polynomial, box)) for part, polynomial in pairs)
+        return self._section.whole((exactly(x) if part.exact else x for part, x in verdicts), one_energy)
 
 
 def _characteristic(part: LinearSystem) -> tuple[Polynomial, ...]:

@@ -17,7 +17,7 @@ from mbsym.maps.section import Section
 from mbsym.problems.stability.exact import inertia
 from mbsym.problems.stability.exact import verdict_at as exact_verdict
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.verdict import Verdict, combine
+from mbsym.problems.stability.verdict import Verdict
 
 
 class Border(StrEnum):
@@ -52,7 +52,7 @@ def verdict_at(section: Section, point: Sequence[Any]) -> Judged:
     values = {k: rationals.fraction(x) for k, x in enumerate(point)}
     parts, one_energy = section.judged([(x > 0) - (x < 0) for x in point])
     verdicts = [exact_verdict(part, values) for part in parts]
-    verdict = combine((part_verdict.verdict for part_verdict in verdicts), one_energy)
+    verdict = section.whole((part_verdict.verdict for part_verdict in verdicts), one_energy)
     signature = [inertia(stiffness_at(part, point)) for part in parts]
     degree, null = sum(counts[2] for counts in signature), sum(counts[1] for counts in signature)
     right: int | None = 0

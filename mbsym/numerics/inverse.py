@@ -243,8 +243,7 @@ def inverse_constrained(
         free = _beside(ties)
         scales = np.linalg.norm(own, axis=0)
         scales = np.where(scales > 0, scales, 1.0)
-        scaled, rank[place] = _smallest(free @ (own / scales), free @ right)
-        values[:, place] = scaled / scales
+        values[:, place], rank[place] = _smallest(free @ (own / scales), free @ right, scales)
         rest = free.T @ (free @ (own @ values[:, place] - right))
         residual[:, place] = lower @ rest
         left = max(left, float(np.linalg.norm(rest)))
@@ -264,13 +263,16 @@ def _root(masses: Any) -> Any:
         return np.eye(len(masses))
 
 
-def _smallest(matrix: Any, right: Any) -> tuple[Any, int]:
-    """The smallest x of least |matrix x - right|, and the rank; columns had length 1 before forces of constraints were
-    taken out: what is left of one may be rounding."""
-    left, sizes, turned = np.linalg.svd(matrix, full_matrices=False)
-    known = sizes > NOTHING
-    inverse = np.where(known, 1 / np.where(known, sizes, 1.0), 0.0)
-    return turned.T @ (inverse * (left.T @ right)), int(np.sum(known))
+def _smallest(matrix: Any, right: Any, scales: Any) -> tuple[Any, int]:
+    """The smallest u = x/scales of least |matrix x - right|, and the rank.
+
+    Columns had length 1 before forces of constraints were taken out: what is left of one may be rounding.
+    """
+    left, sizes, turned = np.linalg.svd(matrix)
+    rank = int(np.sum(sizes > NOTHING))
+    found = (turned[:rank].T @ ((left.T @ right)[:rank] / sizes[:rank])) / scales
+    alike = (turned[rank:] / scales).T  # inputs that change nothing
+    return found - alike @ np.linalg.lstsq(alike, found, rcond=None)[0], rank
 
 
 def _beside(ties: Any) -> Any:
@@ -405,13 +407,20 @@ class _Rows:
             raise ValueError(f"at t = {t:.9g} the motion of {listed} does not follow from what is given: {why}")
         return solution
 
+    def _turning(self, t: float, column: Any) -> Any:
+        """How large what makes up c is, each (r,): c may be what is left of it, and so rounding (a parallelogram's)."""
+        n = self.n
+        others = np.repeat(column[: 2 * n], n + 1, axis=1)
+        others[range(n, 2 * n), range(n)] = 0.0  # without one velocity each, and with all of them
+        return np.max(np.abs(self.at(np.full(n + 1, t), others)[2]), axis=1)
+
     def _check(self, t: float, column: Any) -> None:
         n, h = self.n, self.holonomic
         f, g, c, partials = (x[..., 0] for x in self.at(t, column))
         slopes = np.abs(partials)
         sizes = self._sizes(column)
         off = [np.abs(f) / (slopes[:h] @ sizes[0] + 1e-300), np.abs(g) / (slopes @ sizes[1] + 1e-300)]
-        off.append(np.abs(c + partials @ column[2 * n :, 0]) / (slopes @ sizes[2] + np.abs(c) + 1e-300))
+        off.append(np.abs(c + partials @ column[2 * n :, 0]) / (slopes @ sizes[2] + self._turning(t, column) + 1e-300))
         for values, what in zip(off, ("", " (velocities)", " (accelerations)"), strict=True):
             if len(values) and not np.max(values) < OFF:
                 name = self.names[int(np.argmax(np.nan_to_num(values, nan=np.inf)))]

@@ -182,9 +182,7 @@ def symmetries(
     """(c, its value on the motion, whether p is constant) for the combinations of fields that change no equation.
 
     ``rows`` J of integrable constraints allow them, J c = 0: they lead from a leaf into itself, without work.
-    ``here`` puts the motion in; only fields of ``standing`` coordinates are told, and those with independent values
-    that are not 0.  Of fields that do not commute it is not said that p is constant: they are no cyclic coordinates of
-    one description, so that Routh's reduction is not theirs; energies and families of equilibria ask for less.
+    ``here`` puts the motion in; only fields of ``standing`` coordinates are told, and those with values that are not 0.
     Raises NoClosedForm beyond the bounds.
     """
     from mbsym.algebra.kernel import kernel
@@ -214,9 +212,23 @@ def symmetries(
         if any(not set(ring.dependencies(x, coordinates)) <= {*standing} for x in c) or _shears(ring, coordinates, c):
             continue
         value = tuple(here(x) for x in c)
-        if all(x.is_zero() for x in value) or not _completing(ring, [v for _, v, _ in accepted], [value]):
-            continue
-        accepted.append((c, value, _along(ring, c, forces).is_zero()))
+        if not all(x.is_zero() for x in value):
+            accepted.append((c, value, _along(ring, c, forces).is_zero()))
+    return accepted
+
+
+def independent(
+    ring: Ring, coordinates: Sequence[str], found: Sequence[tuple[Direction, Direction, bool]]
+) -> list[tuple[Direction, Direction, bool]]:
+    """Those with independent values on the motion.
+
+    Of fields that do not commute it is not said that p is constant: they are no cyclic coordinates of one description,
+    so that Routh's reduction is not theirs; energies and families of equilibria ask for less.
+    """
+    accepted: list[tuple[Direction, Direction, bool]] = []
+    for symmetry in found:
+        if _completing(ring, [v for _, v, _ in accepted], [symmetry[1]]):
+            accepted.append(symmetry)
     if all(_commute(ring, coordinates, a, b) for (a, _, _), (b, _, _) in combinations(accepted, 2)):
         return accepted
     return [(c, value, False) for c, value, _ in accepted]
@@ -279,9 +291,24 @@ def _commute(ring: Ring, coordinates: Sequence[str], a: Direction, b: Direction)
 def among(
     ring: Ring, found: Sequence[tuple[Direction, Direction, bool]], every: Sequence[str], coordinates: Sequence[str]
 ) -> Displacements:
-    """Those whose values lie along some of ``every`` coordinates, those with constant momenta first."""
+    """Their combinations whose values lie along some of ``every`` coordinates, those with constant momenta first.
+
+    Of c_1, c_2, ... with values v_1, v_2, ...  sum w_k c_k  where  sum w_k v_k = 0  at the other coordinates.
+    """
+    from mbsym.algebra.kernel import kernel
+
     places = [every.index(name) for name in coordinates]
-    own = [symmetry for symmetry in found if not any(x and i not in places for i, x in enumerate(symmetry[1]))]
+    ordered = sorted(found, key=lambda symmetry: not symmetry[2])
+    zero = [[value[i] for _, value, _ in ordered] for i in range(len(every)) if i not in places]
+    own: list[tuple[Direction, Direction, bool]] = []
+    for weights in kernel(ring, *(zero or [[ring.zero] * len(ordered)])):
+        shares = list(weights.values())
+        field, value = (
+            tuple(ring.reduce(ring.dot(shares, [parts[k][i] for k in weights])) for i in range(len(every)))
+            for parts in ([c for c, _, _ in ordered], [value for _, value, _ in ordered])
+        )
+        if len(weights) == 1 or not _shears(ring, every, field):
+            own.append((field, value, all(ordered[k][2] for k in weights)))
     own.sort(key=lambda symmetry: not symmetry[2])
     constant = sum(symmetry[2] for symmetry in own)
     fields = {k: _displacement(ring, c, every, "d") for k, (c, value, _) in enumerate(own) if c != value}

@@ -63,6 +63,7 @@ from mbsym.problems.displacements import (
     Displacements,
     among,
     displacements,
+    independent,
     linear_fields,
     symmetries,
     turned_fields,
@@ -226,7 +227,7 @@ class Balance:
     @property
     def varying_fields(self) -> tuple[Direction, ...]:
         """Those that vary with the position, as functions of it: their flows take motions into motions."""
-        return tuple(c for c, value, _ in self._fields if c != value)
+        return tuple(c for c, value, _ in self._symmetries if c != value)
 
     @property
     def _allowing(self) -> tuple[Direction, ...] | None:
@@ -235,6 +236,13 @@ class Balance:
 
     @cached_property
     def _fields(self) -> list[tuple[Direction, Direction, bool]]:
+        try:
+            return independent(self.scene.ring, self.scene.system.coordinates, self._symmetries)
+        except Failure:
+            return []
+
+    @cached_property
+    def _symmetries(self) -> list[tuple[Direction, Direction, bool]]:
         system, ring = self.scene.system, self.scene.ring
         rows = self._allowing
         if self.energy is None or self.somewhere or self._forces is None or rows is None:

@@ -162,3 +162,36 @@ def test_where_wheels_roll_to_follows_by_integration(speeds: str) -> None:
         lambda t, ps: -0.5 - np.sin(ps) / 0.7, (0, 2), [0.4], "Radau", found.times, rtol=1e-11, atol=1e-12
     )
     assert found["ps"] == pytest.approx(turned.y[0], abs=1e-8)
+
+
+#: Two bars side by side on a bar of length 2: a parallelogram, with a motor in each of its joints.
+DRIVEN_PARALLELOGRAM = """
+mbsym: 1
+name: P
+parameters: {g: 9.81}
+inputs: {u: {meaning: a torque}, v: {meaning: a torque}, w: {meaning: a torque}}
+bodies:
+  - {name: A, attached to: 0, rotation: {axes: [3], angles: [a]}, mass: 1, mass centre: [1/2, 0, 0],
+     inertia about: joint, inertia: [0, 1/3, 1/3]}
+  - {name: B, attached to: A, connection point: [1, 0, 0], rotation: {axes: [3], angles: [b]}, mass: 3,
+     mass centre: [1, 0, 0], inertia about: mass centre, inertia: [0, 1, 1]}
+  - {name: C, attached to: 0, connection point: [2, 0, 0], rotation: {axes: [3], angles: [c]}, mass: 1,
+     mass centre: [1/2, 0, 0], inertia about: joint, inertia: [0, 1/3, 1/3]}
+loads: [{uniform gravity: {vector: [0, -g, 0]}}, {generalized force: {a: u, b: v, c: 3*w}}]
+constraints: [{coincide: [{body: B, point: [2, 0, 0]}, {body: C, point: [1, 0, 0]}]}]
+initial: {a: 1/2, b: -1/2, c: 1/2}
+"""
+
+
+@pytest.mark.parametrize("motion", [{"a": "1/2 + t"}, {"a": "1/2 + t", "b": "-1/2 - t", "c": "1/2 + t"}])
+def test_the_smallest_torques_of_a_parallelogram_that_turns_evenly(motion: dict[str, str]) -> None:
+    """Nothing is accelerated but in circles: u - v + 3 w = 4 g cos a, and u = -v = w/3 is the smallest of it."""
+    found = found_for(DRIVEN_PARALLELOGRAM, **motion)
+    torque = 4 * 9.81 * np.cos(0.5 + found.times) / 11
+    assert found.inputs == pytest.approx(np.array([torque, -torque, 3 * torque]), abs=1e-11)
+    assert not found.unique
+
+
+def test_one_motion_of_all_coordinates_that_a_parallelogram_does_not_keep() -> None:
+    with pytest.raises(ValueError, match="does not satisfy coincide 1"):
+        found_for(DRIVEN_PARALLELOGRAM, a="1/2 + t", b="-1/2 - t", c="1/2 + t + t**2/10**6")

@@ -21,6 +21,7 @@ from mbsym.algebra.roots import RootCount, counted, counted_real
 from mbsym.maps.check import ExactVerdicts
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.verdict import combine
 from mbsym.problems.stability.words import Because, Word
 
 X, Y = fmpq_mpoly_ctx.get(["x", "y"]).gens()
@@ -31,7 +32,7 @@ def section(m: Any, d: Any, g: Any, k: Any, n: Any, conservative: bool = True, *
     """What the judge asks of a section, with one part."""
     rows = [tuple(tuple(ZERO + x for x in row) for row in matrix) for matrix in (m, d, g, k, n)]
     part = LinearSystem(*rows, conservative, **further)
-    return SimpleNamespace(parts=(part,), judged=lambda signs: ((part,), conservative))
+    return SimpleNamespace(parts=(part,), judged=lambda signs: ((part,), conservative), whole=combine)
 
 
 def diagonal(*values: Any) -> list[list[Any]]:

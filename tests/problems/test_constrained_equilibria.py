@@ -628,3 +628,58 @@ def test_where_nothing_acts_every_position_that_is_allowed_is_an_equilibrium(loa
     assert not found.equilibria
     assert not found.families
     assert not found.complete
+
+
+BEAD_ON_A_TABLE = """
+mbsym: 1
+name: E
+parameters: {w: real}
+PRESCRIBED
+bodies:
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [phi]}, MASS}
+  - {name: bead, attached to: table, connection point: [x, y, 0], coordinates: [x, y], mass: 1}
+constraints: [{relation: (x - 1/2)**2 + y**2 = 1}]
+MOTION
+"""
+
+
+@pytest.mark.parametrize("given", [True, False])
+def test_where_something_turns_not_every_position_is_an_equilibrium(given: bool) -> None:
+    """A bead on a circle about (1/2, 0): the turning table leaves it the farthest place and, unstable, the nearest.
+
+    Of a table that turns freely the amended potential p^2/(2 (I + r^2)) has its minimum there.
+    """
+    text = BEAD_ON_A_TABLE.replace("PRESCRIBED", "prescribed: {phi: {rate: w}}" if given else "")
+    inertia = "mass: 0" if given else "mass: 1, inertia about: mass centre, inertia: [1, 1, 1]"
+    text = text.replace("MASS", inertia).replace("MOTION", "" if given else "motion: {phi: {rate: w}, x: 3/2, y: 0}")
+    found = listed(text, w=2)
+    assert found.complete
+    assert not found.everywhere
+    far, near = found.equilibria
+    assert [x.value for x in far.values] == [1.5, 0]
+    assert far.verdict.word is (Word.STABLE if given else Word.STABLE_BUT_CYCLIC)
+    assert [x.value for x in near.values] == [-0.5, 0]
+    assert near.verdict.word is Word.UNSTABLE
+    assert listed(text, w=0).everywhere
+
+
+LOADED_BALL = """
+mbsym: 1
+name: B
+bodies:
+  - {name: centre, attached to: 0, connection point: [x, y, 1/2], coordinates: [x, y], mass: 0}
+  - {name: ball, attached to: centre, rotation: {axes: AXES, angles: [a, b, c]}, mass: 2, mass centre: [CENTRE],
+     inertia about: mass centre, inertia: [1/5, 1/4, 3/10]}
+loads: [{uniform gravity: {vector: [0, 0, -9]}}]
+constraints: [{rolling: {body: ball, point: [0, 0, -1/2], axes: centre, on: ground}}]
+"""
+
+
+@pytest.mark.parametrize(("axes", "centre"), [("[1, 2, 3]", "0, 0, -1/10"), ("[3, 1, 2]", "0, -1/10, 0")])
+def test_a_loaded_ball_has_two_rests_whatever_it_is_turned_by_about_the_vertical(axes: str, centre: str) -> None:
+    """The load below or above; turned by any angle about it the same rest is told by (a, b) and (a + pi, pi - b)."""
+    found = listed(LOADED_BALL.replace("AXES", axes).replace("CENTRE", centre))
+    assert found.complete
+    below, above = found.equilibria
+    assert below.verdict.word is Word.STABLE_BUT_CYCLIC
+    assert above.verdict.word is Word.UNSTABLE

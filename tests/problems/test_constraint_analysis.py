@@ -354,6 +354,22 @@ def test_what_nothing_moves_is_complained_about() -> None:
         analysed(rigid + "  - coincide: [{body: a, point: [1, 0, 0]}, {body: b, point: [0, 0, 0]}]")
 
 
+def test_what_planar_motion_keeps_is_to_be_left_out() -> None:
+    """Axes of two bars of a planar linkage are parallel anyway; without the row it is the linkage that was meant."""
+    bar = "rotation: {axes: [3], angles: [ANGLE]}, mass: m, mass centre: [1, 0, 0]"
+    bars = f"  - {{name: b, attached to: a, {bar}}}\n  - {{name: c, attached to: 0, {bar}}}\nconstraints:"
+    bars = bars.replace("ANGLE", "q1", 1).replace("ANGLE", "q2", 1)
+    text = (
+        FREE.replace("constraints:", bars) + "  - parallel: [{body: b, axis: [0, 0, 1]}, {body: c, axis: [0, 0, 1]}]\n"
+    )
+    with pytest.raises(mbsym.DescriptionError) as refused:
+        analysed(text)
+    assert "error[rigid-constraint]" in str(refused.value)
+    assert "hint: leave it out: it holds wherever they are" in str(refused.value)
+    tied = "  - relation: q1 = q2\n"
+    assert analysed(text[: text.index("  - parallel")] + tied).constraints.position_rank == 1
+
+
 def test_a_dependent_set_must_be_right() -> None:
     assert "1 of 3 velocities depends on the others, and 'dependent' names 2" in complaints(
         "relation: x = y", more="dependent: [x, y]"

@@ -454,7 +454,8 @@ def _idle(system: System, rows: Sequence[Row], ring: Ring) -> list[Fault]:
         name = RowName(number, 0, kind_name(constraint), is_holonomic(constraint), constraint.span)
         if len(fixed) == len(own):
             message = "no coordinate moves what this constraint ties: it is one rigid piece, or nothing is tied"
-            faults.append(Fault("rigid-constraint", message, (name,), "tie bodies that move against each other"))
+            hint = "tie bodies that move against each other" if own else "leave it out: it holds wherever they are"
+            faults.append(Fault("rigid-constraint", message, (name,), hint))
         elif fixed:
             listed = ", ".join(str(row.component) for row in fixed)
             message = Message(

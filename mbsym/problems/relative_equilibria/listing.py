@@ -174,9 +174,15 @@ class Listing(Conditions):
         return top if part.denominator == 1 else f"{top}/{part.denominator}"
 
     def _features(self, place: Place) -> tuple[Any, ...]:
-        """Direction cosines of the joints that have other angles; sines, cosines or values of the other coordinates."""
+        """Direction cosines of the joints that have other angles; sines, cosines or values of the other coordinates.
+
+        Of three angles of which the first or the last may be any, those of its axis tell where the body is.
+        """
         features, done = [], set(self.free)
         for joint in self.chart.joints:
+            if len(joint.angles) == 3:
+                first, last = joint.angles[0] in self.free, joint.angles[2] in self.free
+                joint = replace(joint, first_free=joint.first_free or first, last_free=joint.last_free or last)
             cyclic = joint.angles[:1] * joint.first_free + joint.angles[2:] * joint.last_free
             if set(joint.angles) & set(self.free) - set(cyclic):
                 continue
