@@ -102,7 +102,7 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         if not balance.law.bounded:
             return None
         scene, manifold = analysis.parameters_scene, on_manifold(analysis)
-        if balance.conserves and all(map(analysis.ring.vanishes, _acting(analysis))):
+        if balance.conserves and nothing_acts(analysis):
             return coasting(Because.ALIKE) if _alike(analysis, values) else by_geodesics()
         damping = () if on_a_leaf(analysis) else analysis.autonomous.D.polynomials
         equilibrium = analysis.equilibrium
@@ -110,6 +110,11 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         return expanded.by_energy(balance.conserves, values, damping)
     except (Failure, *NOT_THERE):
         return None
+
+
+def nothing_acts(analysis: Analysis) -> bool:
+    """Whether no force of any kind moves the system from rest, for all parameters."""
+    return all(map(analysis.ring.vanishes, _acting(analysis)))
 
 
 def _acting(analysis: Analysis) -> Iterator[Polynomial]:
@@ -230,30 +235,30 @@ def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial
 def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str, Any] | None = None) -> Verdict:
     """A verdict that is on a border, decided by the first term of V(x) of the one coordinate.
 
-    For all parameters, or at ``values`` of them.  Where its sign is not known for all, the condition is told.
+    For all parameters, or at ``values`` of them.
     """
+    if analysis.parameters_scene.ring.kinked:
+        return _of_two_sides(analysis, values) or verdict
+    sign, term = _first_term(analysis, values)
+    return verdict if term is None else term.verdict(sign(term.coefficient)) or verdict
+
+
+def first_term(analysis: Analysis) -> FirstTerm | None:
+    """The first term of V(x) of the one coordinate that is not known to vanish for all parameters."""
+    return None if analysis.parameters_scene.ring.kinked else _first_term(analysis, None)[1]
+
+
+def _first_term(
+    analysis: Analysis, values: Mapping[str, Any] | None
+) -> tuple[Callable[[Polynomial], str], FirstTerm | None]:
     scene, balance = analysis.parameters_scene, analysis.balance
 
     def for_all(x: Polynomial) -> str:
         return knowledge.signs(scene).sign(x)  # told anew: expansions bring numbers with them, as exp(1)
 
     sign = for_all if values is None else _sign_at(scene.ring, values)
-    if scene.ring.kinked:
-        return _of_two_sides(analysis, values) or verdict
     balance = balance if values is None else balance.at(values)
-    term = next(first_terms(analysis, balance, sign), None)
-    if term is None:
-        return verdict
-    known = sign(term.coefficient)
-    staying, leaving = (term.verdict(word) for word in ("positive", "negative"))
-    if known != "unknown" or values is not None or term.order % 2 or staying is None or leaving is None:
-        return term.verdict(known) or verdict
-    condition = knowledge.signs(scene).condition(term.coefficient)
-    if condition.kind != "inequality" or condition.nonzero:
-        return verdict
-    positive = Formula(scene.ring, condition.polynomial)
-    reasons = (reason for reason in verdict.reasons if reason.code is not Because.HIGHER_ORDER)
-    return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (term.order, positive, staying.word))))
+    return sign, next(first_terms(analysis, balance, sign), None)
 
 
 def _of_two_sides(analysis: Analysis, values: Mapping[str, Any] | None) -> Verdict | None:

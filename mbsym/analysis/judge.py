@@ -284,7 +284,9 @@ class Judge:
         # What equilibria are judged by is not imported for nothing.
         from mbsym.problems.relative_equilibria.verdict import decided_at
 
-        return decided_at(verdict, self.analysis.parameters_scene, values)
+        there = decided_at(verdict, self.analysis.parameters_scene, values)
+        alike = there.because(Because.ALIKE) and not higher.nothing_acts(self.analysis)
+        return here(there) if alike else there
 
     @cached_property
     def _in_others(self) -> Judge | None:
