@@ -147,7 +147,9 @@ def _judged(analysis: Analysis) -> Stability:
     judge = Judge(analysis)
     if judgement.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and judge.may_add(judgement.verdict):
         verdict = higher.of_one_coordinate(analysis, judgement.verdict)
-        judgement = stability.with_verdict(judgement, judge.for_all(verdict))
+        verdict = judge.for_all(verdict)
+        further = higher.by_reduced_potential(analysis) if verdict.word is Word.UNDECIDED else None
+        judgement = stability.with_verdict(judgement, further or verdict)
         if judgement.verdict.word.open:
             judgement = by_sign(analysis, judgement)
         if judgement.verdict.word.open and judgement.numerical is None:

@@ -12,6 +12,7 @@ from flint import arb
 from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.matrices import solved
 from mbsym.algebra.parts import installed
 from mbsym.algebra.point import Rationals
 from mbsym.analysis.approximation import kept_by_velocities, refuse_unsolved
@@ -20,6 +21,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
+from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
 from mbsym.model.substitution import on_one_side
@@ -130,6 +132,47 @@ def momenta_at_rest(analysis: Analysis) -> Iterator[Polynomial]:
     kinetic = analysis.energy.kinetic_energy.polynomial
     for name in analysis.system.coordinates:
         yield analysis.ring.at_rest(analysis.ring.velocity_derivative(kinetic, name))
+
+
+def by_reduced_potential(analysis: Analysis, values: Mapping[str, Any] | None = None) -> Verdict | None:
+    """Instability of a steady motion at whose momenta beta of cyclic coordinates c the reduced potential W is constant.
+
+    With dT/dc' = beta, dW/ds = -dL/ds at s' = 0, and gyroscopic forces are changes of dT/ds' there, of which one
+    coordinate s knows nothing.  For all parameters, or at ``values``; None where something varies or was not found.
+    """
+    system, ring = analysis.system, analysis.ring
+    if system.constraints or system.speeds or (values is None and not analysis.equilibrium.satisfied):
+        return None
+    numbers = {} if values is None else ring.given(values)
+    here = unperturbed_with(analysis.scene, relations(analysis.scene))
+
+    def at(x: Polynomial) -> Polynomial:
+        return ring.reduce(ring.substitute(x, dict(numbers)))
+
+    try:
+        energy, balance = analysis.energy, analysis.balance if values is None else analysis.balance.at(values)
+        c = [name for name in balance.ignorable if name not in balance.driven]
+        s = [name for name in system.coordinates if name not in c]
+        if not (
+            c and s and balance.conserves and all(map(ring.vanishes, generalized_forces(analysis.held_scene).values()))
+        ):
+            return None
+        still = {ring.index("velocity", name): ring.zero for name in s}
+        momenta = [
+            ring.substitute(ring.velocity_derivative(energy.kinetic_energy.polynomial, name), still) for name in c
+        ]
+        gaps = [[at(ring.substitute(p, here) - ring.at_rest(p))] for p in momenta]
+        mass = [[at(ring.velocity_derivative(p, name)) for name in c] for p in momenta]
+        rates = {ring.index("velocity", name): x for name, (x,) in zip(c, solved(ring, mass, gaps), strict=True)}
+        lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
+        varying = [ring.derivative(lagrangian, name) for name in s]
+        if len(s) > 1:
+            varying += [ring.velocity_derivative(lagrangian, name) for name in s]
+        if not all(ring.vanishes(at(ring.substitute(x, still | rates))) for x in varying):
+            return None
+    except (Failure, *NOT_THERE):
+        return None
+    return by_geodesics()
 
 
 def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -19,7 +20,7 @@ from mbsym.model.substitution import put
 from mbsym.model.system import Assumption, System
 from mbsym.problems.stability.problem import Stability, with_cases
 from mbsym.problems.stability.requirements import REVERSED, Case, Place, Requirement
-from mbsym.problems.stability.verdict import Flaw, Verdict, here, weakest
+from mbsym.problems.stability.verdict import Verdict, here, weakest
 from mbsym.problems.stability.words import Word
 
 if TYPE_CHECKING:
@@ -70,17 +71,20 @@ def where_positive(analysis: Analysis, p: Polynomial) -> Verdict | None:
 
 
 def _asked(analysis: Analysis, system: System) -> Verdict | None:
-    """The verdict on another description, its work charged to who asks; None where there is none."""
+    """The verdict on another description, its work charged to who asks; None where there is none.
+
+    Of coordinates that are cyclic there, and not for all parameters, that is told.
+    """
     ring, other = analysis.ring, type(analysis)(system, (), analysis.terms, suggests=False)
     try:
         its = other.ring
     except (Failure, *NOT_THERE):
         return None
-    with its.budget(ring.work_budget - ring.work) as spent:
-        try:
-            verdict: Verdict | None = other.stability.verdict
-        except (Failure, ContradictionError, *NOT_THERE):
-            verdict = None
+    verdict: Verdict | None = None
+    with its.budget(ring.work_budget - ring.work) as spent, suppress(Failure, ContradictionError, *NOT_THERE):
+        verdict = other.stability.verdict
+        if {*other.balance.ignorable} - {*analysis.balance.ignorable}:
+            verdict = here(verdict)
     ring.spend(spent.work)
     return verdict
 
@@ -90,15 +94,13 @@ def by_sign(analysis: Analysis, found: Stability) -> Stability:
 
     It is the first term of V of one coordinate, or a parameter that the first approximation does not know.
     """
-    if len(found.subsystems) != 1 or not analysis.suggests:
+    if len(found.subsystems) != 1 or found.presumed or not analysis.suggests:
         return found
     for label, p in _hinges(analysis, found):
         each = where_positive(analysis, p), where_positive(analysis, -p), where_zero(analysis, p)
         above, below, between = (None if x is None or x.word.open or x.word is Word.DEPENDS else x for x in each)
         if above is None and below is None:
             continue
-        if between is not None and not any(Flaw.CYCLIC in x.flawed for x in (above, below) if x is not None):
-            between = here(between)
         lower = label if above is None else Message(REVERSED, label=label)
         told = ((label, p, ">", above), (lower, -p, ">", below), (label, p, "=", between))
         cases = [_case(name, x, relation, verdict) for name, x, relation, verdict in told if verdict is not None]
