@@ -102,8 +102,10 @@ def by_sign(analysis: Analysis, found: Stability) -> Stability:
         if above is None and below is None:
             continue
         lower = label if above is None else Message(REVERSED, label=label)
-        told = ((label, p, ">", above), (lower, -p, ">", below), (label, p, "=", between))
-        cases = [_case(name, x, relation, verdict) for name, x, relation, verdict in told if verdict is not None]
+        of = [(label, p, ">", above), (lower, -p, ">", below), (label, p, "=", between)]
+        if above and between and (above.word, above.theorems) == (between.word, between.theorems):
+            of = [(label, p, ">=", above), of[1]]
+        cases = [_case(name, x, relation, verdict) for name, x, relation, verdict in of if verdict is not None]
         return with_cases(found, analysis.ring, analysis.signs, cases)
     return found
 

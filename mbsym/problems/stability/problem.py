@@ -204,7 +204,7 @@ def with_cases(found: Stability, ring: Ring, signs: Signs, cases: Sequence[Case]
         return small.project(x) if isinstance(small, ParameterRing) else x
 
     m, d, g, stiff, n = map(rows, system.matrices)
-    (turned,), shifts = rows((system.turned,)), rows(system.shifts)
+    turned, shifts = tuple(rows((system.turned,))[0]), rows(system.shifts)
     there = replace(system, M=m, D=d, G=g, K=stiff, N=n, turned=turned, shifts=shifts)
     theory = with_given_cases(analyse(there, known), [case.carried(carried) for case in cases], known)
     theory = replace(theory, at_point=part.theory.at_point)

@@ -145,3 +145,31 @@ def test_attraction_by_the_cube_of_the_distance(held, z, word, there):
     text = ORBIT.format(held=held, z="z" if z else "0", more=", z" if z else "", at=", z: 0" if z else "")
     stability = mbsym.loads(text).stability
     assert (stability.verdict.word, stability.numerical.word) == (word, there)
+
+
+def test_a_root_in_the_first_term():
+    cases = described("a: positive, b: positive", "(sqrt(a) - b)*x**4").stability.subsystems[0].theory.cases
+    assert [case.verdict.word for case in cases[:2]] == ["stable", UNSTABLE]
+
+
+def test_what_holds_with_equality_is_told_once():
+    """-E' = x'^2 (c x^2 + e x'^2): averaged a' = -(c + 3 e) a^3/8, so that c < 0 depends on both."""
+    stability = described("c: real, e: positive", "x**2/2", "-c*x**2*x_dot - e*x_dot**3").stability
+    (only, left) = told_cases(stability.subsystems[0])
+    assert (only.all_of[0].relation, only.word, left.word) == (">=", ASYMPTOTIC, "undecided")
+
+
+def test_gyroscopic_forces_do_not_hold_a_coordinate_that_nothing_else_does():
+    """k = 0: y' + b x = C, and y' is C/(1 + b^2) in the mean of small motions."""
+    text = """
+mbsym: 1
+name: Two coordinates
+parameters: {k: real, b: positive}
+bodies: [{name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}]
+loads:
+  - potential: k*y**2/2 + k*y**4 + x**2/2 + x**4
+  - generalized force: {x: b*y_dot, y: -b*x_dot}
+motion: {x: 0, y: 0}
+"""
+    (found,) = mbsym.loads(text + claimed(("k >= 0", "sufficient"))).claims
+    assert found.outcome == "does not hold"
