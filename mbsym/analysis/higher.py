@@ -21,7 +21,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.motion import relations, unperturbed_with
+from mbsym.mechanics.motion import relations, turning, unperturbed_with
 from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
 from mbsym.model.substitution import on_one_side
@@ -142,6 +142,8 @@ def by_reduced_potential(analysis: Analysis, values: Mapping[str, Any] | None = 
     """
     system, ring = analysis.system, analysis.ring
     if system.constraints or system.speeds or (values is None and not analysis.equilibrium.satisfied):
+        return None
+    if not turning(analysis.scene) or nothing_acts(analysis):  # judged by whether positions are alike
         return None
     numbers = {} if values is None else ring.given(values)
     here = unperturbed_with(analysis.scene, relations(analysis.scene))
