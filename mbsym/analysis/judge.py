@@ -88,8 +88,10 @@ class Judge:
         return self._counted(self._exact(values) if rational else self._enclosed, values)
 
     def _counted(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
-        """With the drift of coordinates that are cyclic at these values only told as such."""
-        return here(verdict) if Flaw.CYCLIC in verdict.flawed and self._has_cyclic_ones_at(values) else verdict
+        """With the drift told of coordinates that are cyclic at these values, where none is for all of them."""
+        balance = self.analysis.optional("balance") if Flaw.CYCLIC in verdict.flawed else None
+        alone = balance is not None and not balance.ignorable
+        return here(verdict) if alone and self._has_cyclic_ones_at(values) else verdict
 
     @cached_property
     def _enclosed(self) -> Verdict:
@@ -152,7 +154,7 @@ class Judge:
         elif whole.word.open and self.may_add(whole) and self._has_cyclic_ones_at(values):
             exact = self._at(values)
             further_verdict = whole if exact is None else exact({})
-            return whole if further_verdict.word.open else further_verdict
+            return whole if further_verdict.word.open else here(further_verdict)
         return whole
 
     def _has_cyclic_ones_at(self, values: Mapping[str, Fraction]) -> bool:

@@ -73,7 +73,7 @@ def where_positive(analysis: Analysis, p: Polynomial) -> Verdict | None:
 def _asked(analysis: Analysis, system: System) -> Verdict | None:
     """The verdict on another description, its work charged to who asks; None where there is none.
 
-    Of coordinates that are cyclic there, and not for all parameters, that is told.
+    That coordinates are cyclic there, where none is for all parameters, is told.
     """
     ring, other = analysis.ring, type(analysis)(system, (), analysis.terms, suggests=False)
     try:
@@ -83,7 +83,7 @@ def _asked(analysis: Analysis, system: System) -> Verdict | None:
     verdict: Verdict | None = None
     with its.budget(ring.work_budget - ring.work) as spent, suppress(Failure, ContradictionError, *NOT_THERE):
         verdict = other.stability.verdict
-        if {*other.balance.ignorable} - {*analysis.balance.ignorable}:
+        if other.balance.ignorable and not analysis.balance.ignorable:
             verdict = here(verdict)
     ring.spend(spent.work)
     return verdict

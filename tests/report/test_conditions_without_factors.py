@@ -1,4 +1,4 @@
-"""What is compared with 0 is told without positive numbers as factors, also where the author's letters bring them in."""
+"""What is compared with 0 is told without positive numbers as factors, also where letters bring them in."""
 
 import pytest
 
