@@ -190,7 +190,7 @@ def primitive(coefficients: Sequence[Polynomial]) -> tuple[Coefficients, Polynom
         raise ValueError("the polynomial is zero")
     quotients = [coefficient / common for coefficient in coefficients]
     numbers = [number for quotient in quotients for number in quotient.coeffs()]
-    content = _rational_content(numbers)
+    content = rational_content(numbers)
     return tuple(quotient / content for quotient in quotients), common * content
 
 
@@ -303,7 +303,7 @@ def _bezoutian(p: Coefficients, q: Coefficients) -> list[list[Polynomial]]:
     return b
 
 
-def _rational_content(numbers: Sequence[Any]) -> Any:
+def rational_content(numbers: Sequence[Any]) -> Any:
     """The positive rational c for which numbers / c are integers without a common divisor."""
     numerator, denominator = 0, 1
     for number in numbers:

@@ -14,6 +14,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.rationals import fraction
 from mbsym.expressions.tree import (
     ZERO,
+    Call,
     Expression,
     Name,
     add,
@@ -147,14 +148,18 @@ _RUN = "_dot_run"
 
 
 def in_parameters(ring: Ring, x: Polynomial) -> Expression | None:
-    """A polynomial in parameters as an expression; None of others."""
+    """A polynomial in parameters, and in square roots of such, as an expression; None of others."""
     total: Expression = ZERO
     for exponents, c in x.to_dict().items():
         term: Expression = number(Fraction(int(c.p), int(c.q)))
         for g, exponent in zip(ring.generators, exponents, strict=True):
-            if exponent and g.kind != "parameter":
+            if not exponent:
+                continue
+            inside = in_parameters(ring, g.argument) if g.kind == "root" else None
+            if inside is None and g.kind != "parameter":
                 return None
-            term = multiply(term, power(Name(g.name), number(int(exponent)))) if exponent else term
+            base = Name(g.name) if inside is None else Call("sqrt", inside)
+            term = multiply(term, power(base, number(int(exponent))))
         total = add(total, term)
     return total
 

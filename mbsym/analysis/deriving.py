@@ -14,6 +14,7 @@ from mbsym.analysis import approximation, constrained, given, higher
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.analysis.where import by_sign
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.mechanics.kinematics import over_ring
 from mbsym.mechanics.motion import relations, unperturbed_with
@@ -146,12 +147,12 @@ def _judged(analysis: Analysis) -> Stability:
     judge = Judge(analysis)
     if judgement.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and judge.may_add(judgement.verdict):
         verdict = higher.of_one_coordinate(analysis, judgement.verdict)
-        judgement = stability.with_verdict(judgement, judge.for_all(verdict))
-        if (
-            judgement.verdict.word.open
-            and not judgement.verdict.because(Because.ORDER_DECIDES)
-            and judgement.numerical is None
-        ):
+        verdict = judge.for_all(verdict)
+        further = higher.by_reduced_potential(analysis) if verdict.word is Word.UNDECIDED else None
+        judgement = stability.with_verdict(judgement, further or verdict)
+        if judgement.verdict.word.open:
+            judgement = by_sign(analysis, judgement)
+        if judgement.verdict.word.open and judgement.numerical is None:
             judgement = stability.because(judgement, Because.VALUES_DECIDE)
     values = None if judgement.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
     divisor = None if values is None or analysis.system.linear is not None else pole(analysis, values)

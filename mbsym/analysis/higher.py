@@ -12,6 +12,7 @@ from flint import arb
 from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.matrices import solved
 from mbsym.algebra.parts import installed
 from mbsym.algebra.point import Rationals
 from mbsym.analysis.approximation import kept_by_velocities, refuse_unsolved
@@ -20,6 +21,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
+from mbsym.mechanics.motion import relations, turning, unperturbed_with
 from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
 from mbsym.model.substitution import on_one_side
@@ -102,7 +104,7 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         if not balance.law.bounded:
             return None
         scene, manifold = analysis.parameters_scene, on_manifold(analysis)
-        if balance.conserves and all(map(analysis.ring.vanishes, _acting(analysis))):
+        if balance.conserves and nothing_acts(analysis):
             return coasting(Because.ALIKE) if _alike(analysis, values) else by_geodesics()
         damping = () if on_a_leaf(analysis) else analysis.autonomous.D.polynomials
         equilibrium = analysis.equilibrium
@@ -110,6 +112,11 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         return expanded.by_energy(balance.conserves, values, damping)
     except (Failure, *NOT_THERE):
         return None
+
+
+def nothing_acts(analysis: Analysis) -> bool:
+    """Whether no force of any kind moves the system from rest, for all parameters."""
+    return all(map(analysis.ring.vanishes, _acting(analysis)))
 
 
 def _acting(analysis: Analysis) -> Iterator[Polynomial]:
@@ -125,6 +132,49 @@ def momenta_at_rest(analysis: Analysis) -> Iterator[Polynomial]:
     kinetic = analysis.energy.kinetic_energy.polynomial
     for name in analysis.system.coordinates:
         yield analysis.ring.at_rest(analysis.ring.velocity_derivative(kinetic, name))
+
+
+def by_reduced_potential(analysis: Analysis, values: Mapping[str, Any] | None = None) -> Verdict | None:
+    """Instability of a steady motion at whose momenta beta of cyclic coordinates c the reduced potential W is constant.
+
+    With dT/dc' = beta, dW/ds = -dL/ds at s' = 0, and gyroscopic forces are changes of dT/ds' there, of which one
+    coordinate s knows nothing.  For all parameters, or at ``values``; None where something varies or was not found.
+    """
+    system, ring = analysis.system, analysis.ring
+    if system.constraints or system.speeds or (values is None and not analysis.equilibrium.satisfied):
+        return None
+    if not turning(analysis.scene) or nothing_acts(analysis):  # judged by whether positions are alike
+        return None
+    numbers = {} if values is None else ring.given(values)
+    here = unperturbed_with(analysis.scene, relations(analysis.scene))
+
+    def at(x: Polynomial) -> Polynomial:
+        return ring.reduce(ring.substitute(x, dict(numbers)))
+
+    try:
+        energy, balance = analysis.energy, analysis.balance if values is None else analysis.balance.at(values)
+        c = [name for name in balance.ignorable if name not in balance.driven]
+        s = [name for name in system.coordinates if name not in c]
+        if not (
+            c and s and balance.conserves and all(map(ring.vanishes, generalized_forces(analysis.held_scene).values()))
+        ):
+            return None
+        still = {ring.index("velocity", name): ring.zero for name in s}
+        momenta = [
+            ring.substitute(ring.velocity_derivative(energy.kinetic_energy.polynomial, name), still) for name in c
+        ]
+        gaps = [[at(ring.substitute(p, here) - ring.at_rest(p))] for p in momenta]
+        mass = [[at(ring.velocity_derivative(p, name)) for name in c] for p in momenta]
+        rates = {ring.index("velocity", name): x for name, (x,) in zip(c, solved(ring, mass, gaps), strict=True)}
+        lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
+        varying = [ring.derivative(lagrangian, name) for name in s]
+        if len(s) > 1:
+            varying += [ring.velocity_derivative(lagrangian, name) for name in s]
+        if not all(ring.vanishes(at(ring.substitute(x, still | rates))) for x in varying):
+            return None
+    except (Failure, *NOT_THERE):
+        return None
+    return by_geodesics()
 
 
 def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
@@ -230,30 +280,30 @@ def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial
 def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str, Any] | None = None) -> Verdict:
     """A verdict that is on a border, decided by the first term of V(x) of the one coordinate.
 
-    For all parameters, or at ``values`` of them.  Where its sign is not known for all, the condition is told.
+    For all parameters, or at ``values`` of them.
     """
+    if analysis.parameters_scene.ring.kinked:
+        return _of_two_sides(analysis, values) or verdict
+    sign, term = _first_term(analysis, values)
+    return verdict if term is None else term.verdict(sign(term.coefficient)) or verdict
+
+
+def first_term(analysis: Analysis) -> FirstTerm | None:
+    """The first term of V(x) of the one coordinate that is not known to vanish for all parameters."""
+    return None if analysis.parameters_scene.ring.kinked else _first_term(analysis, None)[1]
+
+
+def _first_term(
+    analysis: Analysis, values: Mapping[str, Any] | None
+) -> tuple[Callable[[Polynomial], str], FirstTerm | None]:
     scene, balance = analysis.parameters_scene, analysis.balance
 
     def for_all(x: Polynomial) -> str:
         return knowledge.signs(scene).sign(x)  # told anew: expansions bring numbers with them, as exp(1)
 
     sign = for_all if values is None else _sign_at(scene.ring, values)
-    if scene.ring.kinked:
-        return _of_two_sides(analysis, values) or verdict
     balance = balance if values is None else balance.at(values)
-    term = next(first_terms(analysis, balance, sign), None)
-    if term is None:
-        return verdict
-    known = sign(term.coefficient)
-    staying, leaving = (term.verdict(word) for word in ("positive", "negative"))
-    if known != "unknown" or values is not None or term.order % 2 or staying is None or leaving is None:
-        return term.verdict(known) or verdict
-    condition = knowledge.signs(scene).condition(term.coefficient)
-    if condition.kind != "inequality" or condition.nonzero:
-        return verdict
-    positive = Formula(scene.ring, condition.polynomial)
-    reasons = (reason for reason in verdict.reasons if reason.code is not Because.HIGHER_ORDER)
-    return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (term.order, positive, staying.word))))
+    return sign, next(first_terms(analysis, balance, sign), None)
 
 
 def _of_two_sides(analysis: Analysis, values: Mapping[str, Any] | None) -> Verdict | None:

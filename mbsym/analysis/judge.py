@@ -25,9 +25,11 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.rationals import fraction
+from mbsym.algebra.terms import apart
 from mbsym.analysis import families, higher
 from mbsym.analysis.approximation import refuse_unsolved
 from mbsym.analysis.constrained import in_free_coordinates, on_a_plane, with_runs_prescribed
@@ -40,12 +42,14 @@ from mbsym.mechanics.rest import Value, at_numbers, given_values, missing_values
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.substitution import beside_rest, displaced
 from mbsym.model.system import System
+from mbsym.problems.dissipation import INDEPENDENT
 from mbsym.problems.equations import separate
 from mbsym.problems.stability.problem import ExactVerdicts, stability
 from mbsym.problems.stability.verdict import Flaw, Verdict, here, off_the_leaf, undecided, weakest
 from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
+    from mbsym.algebra.ring import Polynomial
     from mbsym.analysis.pipeline import Analysis
     from mbsym.problems.normal_forms.along import Along, Special
     from mbsym.problems.normal_forms.result import Judged
@@ -80,7 +84,14 @@ class Judge:
         divisor = pole(self.analysis, values)
         if divisor is not None:
             return undecided(Because.POLE, divisor)
-        return self._exact(values) if all(isinstance(x, Fraction) for x in values.values()) else self._enclosed
+        rational = all(isinstance(x, Fraction) for x in values.values())
+        return self._counted(self._exact(values) if rational else self._enclosed, values)
+
+    def _counted(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
+        """With the drift told of coordinates that are cyclic at these values, where none is for all of them."""
+        balance = self.analysis.optional("balance") if Flaw.CYCLIC in verdict.flawed else None
+        alone = balance is not None and not balance.ignorable
+        return here(verdict) if alone and self._has_cyclic_ones_at(values) else verdict
 
     @cached_property
     def _enclosed(self) -> Verdict:
@@ -127,6 +138,9 @@ class Judge:
 
         By step 2 only rational values are judged.
         """
+        return self._counted(self._decided(verdict, values), values)
+
+    def _decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
         whole = self._together(verdict, values)
         for further in (self._by_what_is_near, self._apart, self._along_rests):
             if not (whole.word.open and self.may_add(whole)):
@@ -151,6 +165,8 @@ class Judge:
             return False
         try:
             numbers = dict(ring.given(values))
+            if all(any(not ring.substitute(x, numbers).is_zero() for x in held) for held in self._holding):
+                return False
             lagrangian = energies.kinetic_energy.polynomial + energies.force_function.polynomial
             parts = [lagrangian, *generalized_forces(of.held_scene).values()]
             there = [ring.reduce(ring.substitute(x, numbers)) for x in parts]
@@ -158,6 +174,21 @@ class Judge:
             return any(not any(ring.depends_on(x, name) for x in there) for name in others)
         except (Failure, *NOT_THERE):
             return False
+
+    @cached_property
+    def _holding(self) -> list[list[Polynomial]]:
+        """Of every coordinate that is not ignorable for all parameters coefficients with which it stands in L."""
+        of, ring = self.analysis, self.analysis.ring
+        energies = of.energy
+        lagrangian = energies.kinetic_energy.polynomial + energies.force_function.polynomial
+        moving = [k for k in occurring([lagrangian]) if ring.generators[k].kind in INDEPENDENT]
+        parts = apart(lagrangian, moving)
+        found = []
+        for name in of.system.coordinates:
+            if name not in of.balance.ignorable:
+                at = [n for n, k in enumerate(moving) if ring.depends_on(ring.context.gen(k), name)]
+                found.append([x for key, x in parts.items() if any(key[n] for n in at)])
+        return found
 
     def at(self, values: Mapping[str, Value], first: Verdict) -> Verdict:
         """``decided`` at values that may be expressions of exact irrational numbers."""
@@ -203,8 +234,9 @@ class Judge:
         return replace(apart, reasons=tuple(sorted({*reasons, about}, key=lambda reason: reason.rank)))
 
     def _along_rests(self, values: Mapping[str, Any]) -> Verdict | None:
-        """Instability by slow motions along rests near by, or by those of one coordinate."""
+        """Instability by slow motions along rests or steady motions near by, or by those of one coordinate."""
         along = families.by_rests_near(self.analysis, values, decaying=False)
+        along = along or higher.by_reduced_potential(self.analysis, values)
         try:
             return along or families.by_one_coordinate(self.analysis, values, lambda x: self._judge_of(x)(values))
         except (Failure, *NOT_THERE):
@@ -284,7 +316,9 @@ class Judge:
         # What equilibria are judged by is not imported for nothing.
         from mbsym.problems.relative_equilibria.verdict import decided_at
 
-        return decided_at(verdict, self.analysis.parameters_scene, values)
+        there = decided_at(verdict, self.analysis.parameters_scene, values)
+        alike = there.because(Because.ALIKE) and not higher.nothing_acts(self.analysis)
+        return here(there) if alike else there
 
     @cached_property
     def _in_others(self) -> Judge | None:

@@ -5,25 +5,19 @@ The results themselves do not depend on claims, and claims cost the reports noth
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.factors import irreducible_factors, occurring
-from mbsym.algebra.failures import NOT_THERE, Failure, message_of
-from mbsym.analysis.constrained import in_parameters
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.analysis.judge import Judge
-from mbsym.expressions.tree import divide
+from mbsym.analysis.where import where_zero
 from mbsym.mechanics.variables import angle_denominators, angles_of
 from mbsym.model.claims import CLAIMS, Claim
-from mbsym.model.substitution import put
 from mbsym.problems import claims
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
-from mbsym.problems.stability.verdict import Verdict, weakest
 
 if TYPE_CHECKING:
-    from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.analysis.expanding import Expansion
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.pipeline import Analysis
@@ -112,50 +106,3 @@ def trials(analysis: Analysis) -> Trials:
     mass_matrix = analysis.judgeable.M
     where = partial(where_zero, analysis)
     return Trials(analysis.system, analysis.ring, mass_matrix, solved, judge.first_approximation, judge.decided, where)
-
-
-def where_zero(analysis: Analysis, p: Polynomial) -> Verdict | None:
-    """What problem 6 says wherever p vanishes, a polynomial in parameters; None where it was not asked.
-
-    Where p = c1 x + c0, x a parameter and c1 != 0 whatever the others are, it is asked of the description with
-    x = -c0/c1.  A factor of p that cannot vanish is left out.
-    """
-    signs = analysis.signs
-    factors = [] if p.is_constant() else [factor for factor, _ in irreducible_factors(p)[1]]
-    verdicts = [_where_zero(analysis, factor) for factor in factors if not signs.never_zero(factor)]
-    if not verdicts or None in verdicts:
-        return None
-    known = [verdict for verdict in verdicts if verdict is not None]
-    alike = len({verdict.word for verdict in known}) == 1 or all(verdict.stable for verdict in known)
-    return weakest(known) if alike else None
-
-
-def _where_zero(analysis: Analysis, p: Polynomial) -> Verdict | None:
-    system, ring, degrees = analysis.system, analysis.ring, p.degrees()
-    free = {*system.parameter_names} - {item.name for item in system.relations}
-    for k in occurring([p]):
-        slope, name = p.derivative(k), ring.generators[k].name
-        if degrees[k] != 1 or name not in free or not analysis.signs.never_zero(slope):
-            continue
-        rest, below = (in_parameters(ring, x) for x in (slope * ring.context.gen(k) - p, slope))
-        if rest is None or below is None:
-            return None
-        parameters = tuple(item for item in system.parameters if item.name != name)
-        there = put(replace(system, parameters=parameters, claims=()), {name: divide(rest, below)})
-        return _charged(ring, type(analysis)(there, (), analysis.terms, suggests=False))
-    return None
-
-
-def _charged(ring: Ring, other: Analysis) -> Verdict | None:
-    """The verdict on another description, its ring's work charged to the claim that asks; None where there is none."""
-    try:
-        its = other.ring
-    except (Failure, *NOT_THERE):
-        return None
-    with its.budget(ring.work_budget - ring.work) as spent:
-        try:
-            verdict: Verdict | None = other.stability.verdict
-        except (Failure, *NOT_THERE):
-            verdict = None
-    ring.spend(spent.work)
-    return verdict

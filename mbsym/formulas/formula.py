@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 from flint import fmpq
 
+from mbsym.algebra.characteristic import rational_content
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.latex import latex_matrix, latex_text
@@ -115,6 +116,16 @@ class Formula(GuessesNames):
     def shown(self) -> Formula:
         """What is written of it: the same in the letters of whoever asked for them (``letters_as``)."""
         return Formula(*lettered(self.ring, self.polynomial))
+
+    @property
+    def primitive(self) -> Formula:
+        """The same over the greatest positive number that divides all its coefficients as they are written."""
+        shown = self.shown
+        return (
+            shown
+            if shown.is_zero
+            else Formula(shown.ring, shown.polynomial / rational_content(shown.polynomial.coeffs()))
+        )
 
     def __str__(self) -> str:
         return python_text(self.ring, self.polynomial)

@@ -33,7 +33,7 @@ from itertools import product as choices
 from typing import Any
 
 from mbsym.algebra.characteristic import leading_minors
-from mbsym.algebra.factors import irreducible_factors, occurring
+from mbsym.algebra.factors import irreducible_factors, occurring, rational_ratio
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
@@ -87,7 +87,7 @@ class EnergyLaw(Enum):
 
 
 #: Generators of which a polynomial vanishes as a function only where all its coefficients do.
-_INDEPENDENT = ("coordinate", "velocity", "sine", "cosine")
+INDEPENDENT = ("coordinate", "velocity", "sine", "cosine")
 
 #: A formula of more products than this is not judged product by product.
 MOST_PRODUCTS = 64
@@ -146,23 +146,30 @@ class Balance:
 
         P = (Q(q, q') - Q(q, 0)) q' as an analytic function: near a strict minimum of V orbits of constant energy are
         its level lines, and where P vanished on lines as near as one likes it would vanish on all rays, identically.
+        So it is between the axes where Q knows |q'| or sign(q'), and is continuous: each orbit crosses both sides.
         What vanishes for some parameters is not counted.
         """
         scene, ring = self.scene, self.scene.ring
         names, forces = scene.system.coordinates, self._forces
         alone = len(names) == 1 and not (scene.system.constraints or turning(scene))
-        if not alone or forces is None or ring.kinked or self.law in (EnergyLaw.CONSERVED, EnergyLaw.UNKNOWN):
+        if not alone or forces is None or self.law in (EnergyLaw.CONSERVED, EnergyLaw.UNKNOWN):
             return False
         try:
             (force,) = forces.values()
             above, _ = ring.fraction(self._put(force - ring.at_rest(force)))
         except Failure:
             return False
-        of = (*names, *scene.system.velocities)
-        moving = [k for k in occurring([above]) if ring.dependencies(ring.context.gen(k), of)]
-        if any(ring.generators[k].kind not in _INDEPENDENT for k in moving):
+        sides = _one_sided(ring, above, ring.index("velocity", names[0]))
+        return bool(sides) and all(map(self._somewhere, sides))
+
+    def _somewhere(self, x: Polynomial) -> bool:
+        """Whether an analytic function of q and q' vanishes identically for no parameters."""
+        ring, system = self.scene.ring, self.scene.system
+        of = (*system.coordinates, *system.velocities)
+        moving = [k for k in occurring([x]) if ring.dependencies(ring.context.gen(k), of)]
+        if any(ring.generators[k].kind not in INDEPENDENT for k in moving):
             return False
-        return any(map(self.signs.never_zero, apart(above, moving).values()))
+        return any(map(self.signs.never_zero, apart(x, moving).values()))
 
     @cached_property
     def exactly_linear(self) -> bool:
@@ -730,6 +737,27 @@ def _by_velocities(ring: Ring, x: Polynomial, coordinates: Sequence[str]) -> dic
         if k not in indices and ring.dependencies(ring.context.gen(k), speeds):
             return None
     return apart(x, indices)
+
+
+def _one_sided(ring: Ring, x: Polynomial, velocity: int) -> tuple[Polynomial, ...]:
+    """x where q' > 0 and where q' < 0, of a function that is continuous at q' = 0; itself where both are one.
+
+    Nothing where it knows signs, moduli or tables of anything else.
+    """
+    kinked = [k for k in occurring([x]) if ring.generators[k].kinked]
+    if not kinked:
+        return (x,)
+    speed, sides = ring.context.gen(velocity), []
+    ratios = {k: rational_ratio(ring.generators[k].argument, speed) for k in kinked}
+    for side in (1, -1):
+        images = dict(enumerate(ring.context.gens()))
+        for k, ratio in ratios.items():
+            if ratio is None or ring.generators[k].name not in ("abs", "sign"):
+                return ()
+            turn = side if ratio > 0 else -side
+            images[k] = turn * ratio * speed if ring.generators[k].name == "abs" else images[k] * 0 + turn
+        sides.append(x.compose(*images.values(), ctx=ring.context))
+    return () if any(ring.at_rest(side) != 0 for side in sides) else tuple(sides)
 
 
 @dataclass(frozen=True)

@@ -149,6 +149,14 @@ class Relation:
     def __init__(self, *parts: Math | str) -> None:
         object.__setattr__(self, "parts", parts)
 
+    @property
+    def told(self) -> tuple[Math | str, ...]:
+        """The parts as they are written: what is compared with 0 without a positive number as its factor."""
+        match self.parts:
+            case (Formula() as x, ">" | "<" | ">=" | "<=" | "!=" as sign, 0):
+                return x.primitive, sign, 0
+        return self.parts
+
 
 @dataclass(frozen=True)
 class Polynomial:

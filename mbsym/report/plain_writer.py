@@ -174,7 +174,7 @@ class Writer:
 
     def _relation(self, value: content.Relation) -> str:
         written, before = "", None
-        for x in value.parts:
+        for x in value.told:
             piece = self.inline(x).strip()
             listed = isinstance(x, content.Listed) and x.brackets and not isinstance(x.items[0], Formula)
             called = listed and isinstance(before, content.Symbol)  # with formulas it would be a product

@@ -465,12 +465,13 @@ loads:
 motion: {x: 0}
 """
     lines = told(tmp_path, text)
-    first = lines.index("Stability  undecided")
-    assert lines[first + 1] == "Terms of order 4 decide: it is stable where b > 0, and unstable where that is < 0."
+    first = lines.index("Stability  depends on the parameters")
+    assert lines[first + 1] == "stable (Lagrange-Dirichlet) if b > 0"
+    assert lines[first + 2] == "otherwise unstable (converse of Lagrange-Dirichlet) if b < 0"
     lines = told(tmp_path, text.replace("x**4", "x**3"))
     first = lines.index("Stability  undecided")
     assert lines[first + 1].startswith("Terms of higher order may decide: give all parameters values")
-    assert not [line for line in told(tmp_path, text.replace("b*", "m*")) if "Terms of" in line]
+    assert not [line for line in told(tmp_path, text.replace("b*", "m*")) if "Terms of" in line or "if b" in line]
 
 
 def test_a_claim_that_differs_by_little_is_told_by_what(tmp_path: Path) -> None:

@@ -366,12 +366,12 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                 continue
             note = _BODIES if bodies else ""
             verdict = region.verdict(conditions, bodies)
-            if verdict.stable:
+            if verdict.counted.stable:
                 return holds(verdict, note)
             if verdict.word in (Word.GYROSCOPIC, Word.CRITICAL):
                 open_words = (said(Said.FIRST_WITH_IT, number),)
             inner = region.verdict(strict, bodies) if strict != conditions else verdict
-            if inner.stable and strict != conditions:
+            if inner.counted.stable and strict != conditions:
                 message = with_theorem(inner.word, inner.theorems)
                 borders = _on_borders(region, conditions)
                 if borders is not None:

@@ -39,8 +39,8 @@ from mbsym.problems.stability.constant import algebraic_point, in_declared
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
-from mbsym.problems.stability.requirements import Cell, Lift, Requirement, cells_of, everywhere, joined
-from mbsym.problems.stability.symbolic import Theory, analyse
+from mbsym.problems.stability.requirements import Case, Cell, Lift, Requirement, cells_of, everywhere, joined
+from mbsym.problems.stability.symbolic import Theory, analyse, with_given_cases
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
 from mbsym.problems.stability.words import Because, Fact, Reason, Word, named
 
@@ -182,6 +182,30 @@ def with_verdict(found: Stability, verdict: Verdict) -> Stability:
     """The same with another verdict for all parameters, of its one subsystem, too."""
     parts = tuple(replace(part, theory=replace(part.theory, verdict=verdict)) for part in found.subsystems)
     return replace(found, subsystems=parts if len(parts) == 1 else found.subsystems, verdict=verdict)
+
+
+def with_cases(found: Stability, ring: Ring, signs: Signs, cases: Sequence[Case]) -> Stability:
+    """The same with cases for the one subsystem whose verdict is open; their polynomials are of the system's ring."""
+    (part,) = found.subsystems
+    system = part.system
+    if system is None or system.basis is not None:
+        return found
+    whole = [[[part.in_whole(x) for x in row] for row in matrix] for matrix in system.matrices]
+    small, known = in_parameters(ring, [*whole, [[x for case in cases for x in case.polynomials]]], signs)
+
+    def rows(matrix: Polynomials) -> Polynomials:
+        return tuple(tuple(carried(part.in_whole(x)) for x in row) for row in matrix)
+
+    def carried(x: Polynomial) -> Polynomial:
+        return small.project(x) if isinstance(small, ParameterRing) else x
+
+    m, d, g, stiff, n = map(rows, system.matrices)
+    turned, shifts = tuple(rows((system.turned,))[0]), rows(system.shifts)
+    there = replace(system, M=m, D=d, G=g, K=stiff, N=n, turned=turned, shifts=shifts)
+    theory = with_given_cases(analyse(there, known), [case.carried(carried) for case in cases], known)
+    theory = replace(theory, at_point=part.theory.at_point)
+    part = replace(part, ring=small, theory=theory, system=there, known=known)
+    return replace(found, subsystems=(part,), verdict=theory.verdict)
 
 
 def stability(

@@ -11,7 +11,7 @@ stable.  Without forces on velocities a vanishing coefficient makes solutions of
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from mbsym.algebra.characteristic import Coefficients, Matrix, Polynomial, leading_minors
@@ -137,6 +137,17 @@ class Case:
         """What its conditions are about, as they arise and reduced."""
         for r in (*self.all_of, *self.any_of):
             yield from r.polynomials
+
+    def carried(self, carry: Lift) -> Case:
+        """The case in another ring, ``carry`` a map of its polynomials that keeps factors irreducible."""
+
+        def there(r: Requirement) -> Requirement:
+            of = r.condition
+            factors, nonzero = (tuple(map(carry, x)) for x in (of.factors, of.nonzero))
+            condition = replace(of, polynomial=carry(of.polynomial), factors=factors, nonzero=nonzero)
+            return replace(r, polynomial=carry(r.polynomial), condition=condition)
+
+        return replace(self, all_of=tuple(map(there, self.all_of)), any_of=tuple(map(there, self.any_of)))
 
     @property
     def never(self) -> bool:

@@ -946,6 +946,14 @@ def _first_certain(cases: Sequence[Case], known: Signs) -> tuple[Verdict, bool]:
     return alone(cells, known), uncovered(cells, known)
 
 
+def with_given_cases(theory: Theory, cases: Sequence[Case], known: Signs) -> Theory:
+    """The theory with other cases, and the verdict that follows from them."""
+    verdict, left = _first_certain(cases, known)
+    if verdict.word is Word.UNSTABLE_BUT_BORDERS and any(case.verdict.stable for case in cases):
+        verdict = depends()  # the border is no open case
+    return replace(theory, cases=tuple(cases), verdict=verdict, uncovered=left)
+
+
 def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:
     """One case at most: some necessary inequality is reversed, so that there is a root with positive real part."""
     reversed_ = against(requirements, known)

@@ -194,9 +194,12 @@ class Verdict:
 
     @property
     def counted(self) -> Word:
-        """The word where coordinates count that are cyclic at these parameters only: their drift is instability."""
+        """The word where coordinates count that are cyclic at these parameters only: their drift is instability.
+
+        Where every velocity tends to its own exponentially these coordinates end near by.
+        """
         if Flaw.HERE in self.flawed:
-            return Word.UNSTABLE
+            return Word.STABLE if self.word is Word.ASYMPTOTIC_BUT_CYCLIC else Word.UNSTABLE
         return Word.STABLE if Flaw.CYCLIC in self.flawed and Ground.LINEAR in self.laid else self.word
 
     @property

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.message import Code, Message, enumerated, joined
 
 if TYPE_CHECKING:
-    from mbsym.formulas.formula import Formula
+    pass
 
 
 class Word(StrEnum):
@@ -137,15 +137,6 @@ def _integrals(*names: str) -> Message:
         "A combination of integrals ([[names]]) is stationary, and its second variation is definite where they keep "
         "their values: it makes a Lyapunov function of the nonlinear system.",
         names=enumerated(names),
-    )
-
-
-def _order_decides(order: int, condition: Formula, word: Word) -> Message:
-    return Message(
-        "Terms of order [[order]] decide: it is [[word]] where [[condition]] > 0, and unstable where that is < 0.",
-        order=order,
-        word=Message(word),
-        condition=condition,
     )
 
 
@@ -328,7 +319,6 @@ class Because(Code):
     BORDERS_APART = "This is so wherever no condition is an equality; border cases are left open here."
     CONDITIONS_UNWRITTEN = "Conditions are too long to be written out; see the cases."
     BORDER = "On a border: no theorem of the first approximation decides."
-    ORDER_DECIDES = member(_order_decides)  # (order, whatever is positive where it is stable, word there)
     VALUES_DECIDE = "Terms of higher order may decide: give all parameters values, and they are looked at."
     NEAR_BORDER = "On a border, or too close to one: no theorem of the first approximation decides."
     JORDAN_BLOCK = (

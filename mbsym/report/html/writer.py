@@ -205,7 +205,7 @@ class Writer:
                     return bracketed(_COMMA.join(items), "{}")
                 return bracketed_row(items) if value.brackets else _COMMA.join(items)
             case content.Relation():
-                return "".join(map(self.math, value.parts))
+                return "".join(map(self.math, value.told))
             case content.Polynomial():
                 written = "".join(self._pieces(value))
                 return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
@@ -254,8 +254,8 @@ class Writer:
                 return self._line("", shown)
             case content.Polynomial():
                 return formulas.whole(self._pieces(shown))
-            case content.Relation(parts):
-                return self._relation(parts)
+            case content.Relation() as relation:
+                return self._relation(relation.told)
             case content.Listed(items, False) if items:
                 *first, last = map(self.math, items)
                 return formulas.whole([*(item + _COMMA for item in first), last])

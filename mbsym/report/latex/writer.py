@@ -158,7 +158,7 @@ class Writer:
                 written = comma.join(map(self.math, value.items))
                 return f"({written})" if value.brackets else f"\\{{{written}\\}}" if value.braces else written
             case content.Relation():
-                written = " ".join(map(self.math, value.parts))
+                written = " ".join(map(self.math, value.told))
                 return f"-{written[2:]}" if written.startswith("- ") else written
             case content.Polynomial():
                 written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem, self._length)

@@ -279,9 +279,9 @@ def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
 
 
 def _what_would_decide(stability: Stability) -> Iterator[Inline]:
-    """Where all parameters are on a border: the condition on terms of higher order, or that values would help."""
+    """Where all parameters are on a border: that values would help."""
     for reason in stability.verdict.reasons:
-        if reason.code in (Because.ORDER_DECIDES, Because.VALUES_DECIDE):
+        if reason.code is Because.VALUES_DECIDE:
             yield worded(sentence(reason))
 
 
