@@ -563,6 +563,11 @@ class Ring(Algebra[Polynomial]):
 
     # --- adjoined elements -------------------------------------------------------------------------------------------
 
+    @property
+    def adjoined(self) -> int:
+        """How many reciprocals, roots and functions there are so far."""
+        return self.spare - 1 - self._free
+
     def _adjoin(self, kind: str, argument: Polynomial, name: str = "") -> int:
         if self._free < 0:
             raise NoClosedForm(
@@ -572,6 +577,11 @@ class Ring(Algebra[Polynomial]):
         self._free -= 1
         self.generators[index] = Generator(kind, name or f"#{index}", 1, argument)
         return index
+
+    @property
+    def adjoined(self) -> int:
+        """How many reciprocals, roots and functions there are so far."""
+        return self.spare - 1 - self._free
 
     def _adjoined(self, kind: str, argument: Polynomial, name: str = "") -> int | None:
         for index in range(self._free + 1, self.spare):

@@ -58,8 +58,11 @@ def reduced(analysis: Analysis) -> Reduced:
     """The system to first order about the unperturbed motion.  Raises Unavailable where none is given."""
     _demand_motion(analysis)
     scene, names = analysis.parameters_scene, analysis.system.coordinates
-    first_order = expansion(scene, analysis.signs, analysis.system)
+    signs, known = analysis.signs, analysis.ring.adjoined
+    first_order = expansion(scene, signs, analysis.system)
     equations = projected(scene, first_order)
+    if analysis.ring.adjoined > known:  # the equations brought in numbers, log(2), whose signs are known, too
+        analysis.forget(analysis.stage_of("signs"))
     leaf = 0 if len(first_order.coordinates) == len(first_order.speeds) else kept_by_velocities(analysis)
     if leaf:
         there, own = on_leaf(scene, first_order, equations)
