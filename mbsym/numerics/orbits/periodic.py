@@ -513,8 +513,8 @@ def _trivial(
     ones, duals = (np.reshape(rows, (-1, width)) for rows in (right, left))
     if float(np.max(np.abs(duals @ ones.T), initial=0.0)) > 1e-6:
         ones, duals = max(ones, duals, key=lambda rows: int(np.linalg.matrix_rank(rows, tol=1e-6))), duals[:0]
-    _, lengths, across = np.linalg.svd(np.vstack([ones, duals]))
-    return tuple(reasons), across[int(np.sum(lengths > 1e-6)) :].T
+    _, lengths, ways = np.linalg.svd(np.vstack([ones, duals]))
+    return tuple(reasons), ways[int(np.sum(lengths > 1e-6)) :].T
 
 
 def _verified(dynamics: Dynamics, state: Any, period: float, turns: Any, scale: Any) -> tuple[float, str]:
