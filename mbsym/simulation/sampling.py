@@ -97,7 +97,8 @@ def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) ->
     setting = Setting(None if fixed else tolerance, request.step, request.step_limit, request.longest)
     if taken is not None:
         method = completing(taken, method)
-    if request.method == "auto" and request.earlier is None and begins_in_equilibrium(dynamics):
+    rested = request.earlier is None or np.all(request.earlier.states == request.earlier.states[:, :1])
+    if (request.method == "auto" or may_change(request)) and rested and begins_in_equilibrium(dynamics):
         method, choices = held(dynamics, method), [replace(choices[0], why=NOTHING_MOVES, measured="")]
     frequency = max(choice.frequency for choice in choices)
     times = sample_times(request, frequency, dynamics.system)
