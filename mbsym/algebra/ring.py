@@ -578,11 +578,6 @@ class Ring(Algebra[Polynomial]):
         self.generators[index] = Generator(kind, name or f"#{index}", 1, argument)
         return index
 
-    @property
-    def adjoined(self) -> int:
-        """How many reciprocals, roots and functions there are so far."""
-        return self.spare - 1 - self._free
-
     def _adjoined(self, kind: str, argument: Polynomial, name: str = "") -> int | None:
         for index in range(self._free + 1, self.spare):
             known = self.generators[index]

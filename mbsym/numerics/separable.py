@@ -19,6 +19,7 @@ from mbsym.algebra.matrices import united
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.llvm import SCALARS
 from mbsym.numerics.methods.interface import (
     COUNTS,
     Breakdown,
@@ -94,6 +95,12 @@ def completing(resting: Reduced, method: Method) -> Separate:
     return Separate(resting.whole, [Part(dynamics.system.coordinates, places, dynamics)], [method])
 
 
+def held(dynamics: Dynamics, method: Method) -> Separate:
+    """What integrates nothing, where nothing moves: whole states rest where they start; called by the name of
+    ``method``, which could have done it but for roundings."""
+    return Separate(dynamics, (), (method,))
+
+
 class Separate:
     """A method that integrates the parts of ``whole`` one beside the other, each by a method of its own.
 
@@ -113,10 +120,10 @@ class Separate:
             raise ValueError("this method was made for the dynamics of another scenario")
         runs = [
             method.start(part.dynamics, setting, scalar, None if initial is None else initial[list(part.places)], at)
-            for part, method in zip(self._parts, self._methods, strict=True)
+            for part, method in zip(self._parts, self._methods, strict=bool(self._parts))
         ]
-        dtype = np.asarray(runs[0].state).dtype.type
-        beside = _Beside(self._parts, runs, initial_state(dynamics, dtype))
+        dtype = np.asarray(runs[0].state).dtype.type if runs else SCALARS[scalar].dtype
+        beside = _Beside(self._parts, runs, initial_state(dynamics, dtype), at)
         if initial is not None:
             beside.require_rest(initial)
         return beside
@@ -160,7 +167,6 @@ class _Beside:
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
-        self.time = self.runs[0].time
         self.ahead = [None] * len(self.runs)
         self.state = self._joined([run.state for run in self.runs])
 
@@ -187,9 +193,9 @@ class _Beside:
             (change for run in self.runs for change in run.work.changes), key=lambda change: change.time
         )
 
-    def _joined(self, states: Sequence[Any]) -> Any:
+    def _joined(self, states: Sequence[Any], shape: tuple[int, ...] = ()) -> Any:
         """Whole states of those of the parts, one or in columns."""
-        shape = np.shape(states[0])[1:]
+        shape = np.shape(states[0])[1:] if states else shape
         whole = np.empty((len(self.whole), *shape), self.whole.dtype)
         whole[...] = self.whole.reshape(-1, *[1] * len(shape))
         for part, state in zip(self.parts, states, strict=True):
@@ -215,7 +221,7 @@ class _Beside:
                 )
                 ended = (place, breakdown) if ended is None or breakdown.time < ended[1].time else ended
         self._count()
-        filled = self._joined(states)
+        filled = self._joined(states, times.shape)
         if ended is not None:
             raise self._ended(*ended, filled[:, -1] if filled.shape[1] else self.state, filled)
         if len(times):
@@ -261,10 +267,11 @@ class _Beside:
                 except Breakdown as ended:
                     raise self._ended(place, ended, self.state) from None
             pieces.append(pending)
-        end = min(piece.end for piece in pieces) if until is None else min(until, *(piece.end for piece in pieces))
+        ends = [piece.end for piece in pieces] or [2 * abs(start) + 1.0]
+        end = min(ends) if until is None else min(until, *ends)
         curves: list[Callable[[Any], Any]] = [piece.curve for piece in pieces]
         joined = self._joined
-        combined = Piece(start, end, lambda times: joined([curve(times) for curve in curves]))
+        combined = Piece(start, end, lambda times: joined([curve(times) for curve in curves], np.shape(times)))
         self.time, self.state = end, combined(end)
         self._count()
         return combined

@@ -18,6 +18,7 @@ from mbsym.numerics.planning.plan import ENERGY, INTEGRATION, Accuracy, Bound, P
 from mbsym.numerics.planning.plan_items import DOUBLED
 from mbsym.numerics.planning.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.simulate import Rests, begins_in_equilibrium
 from mbsym.numerics.states import dynamics_of
 from mbsym.simulation.request import Request, wrong_with
 from mbsym.simulation.result import Simulation
@@ -69,13 +70,17 @@ def plan_for(
 ) -> tuple[Plan, Request]:
     """The plan, measured or recalled, and the request that repeats its run without choosing anything.
 
-    Raises ValueError for a request that cannot be met, Breakdown where the motion does not come to the end, Failure.
+    Raises ValueError for a request that cannot be met, Rests where nothing moves (any method, not one that was asked
+    for, keeps every accuracy then), Breakdown where the motion does not come to the end, Failure.
     """
     wrong = list(wrong_with(replace(request, method="auto", tolerance=None, step=None)))
     if wrong:
         raise ValueError("; ".join(wrong))
     begun = prepared(scenario, replace(request, model=Model()))[0]
-    frequency = rates(dynamics_of(begun))[1]
+    dynamics = dynamics_of(begun)
+    if request.method == "auto" and begins_in_equilibrium(dynamics):
+        raise Rests
+    frequency = rates(dynamics)[1]
     times = sample_times(replace(request, step=None, store=None), frequency, begun.system)
     pins = replace(pins, whole=request.whole, longest=request.longest)
     plan = recall("plan", scenario, request, (accuracy, pins), lambda: planned(begun, accuracy, times, pins, watch))
@@ -102,11 +107,17 @@ def simulate_accurately(
     tried: Callable[[str], None] = lambda text: None,
     recall: Recall = anew,
 ) -> Simulation:
-    """The run of a plan.  Where its own estimate says that the accuracy is missed, a finer one, and a remark."""
+    """The run of a plan.  Where its own estimate says that the accuracy is missed, a finer one, and a remark.
+
+    A rest is exact without a plan.
+    """
     # Who asks for an accuracy asks whether it is kept.
     request = replace(request, estimate=request.estimate is not False)
-    with stage(PLANNING):
-        plan, settled = plan_for(scenario, request, accuracy, pins, tried, recall)
+    try:
+        with stage(PLANNING):
+            plan, settled = plan_for(scenario, request, accuracy, pins, tried, recall)
+    except Rests:
+        return simulate(scenario, request, watch, stage, recall)
     run = simulate(scenario, settled, watch, stage, recall)
     for again in range(REPEATS + 1):
         finer = _finer(plan)

@@ -49,7 +49,7 @@ from mbsym.numerics.tangent import on_tangent
 from mbsym.numerics.watched import between_rows, nearest_to_singular
 from mbsym.simulation.request import DECLARED, Request, wrong_with
 from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
-from mbsym.simulation.sampling import chosen_for
+from mbsym.simulation.sampling import NOTHING_MOVES, chosen_for
 from mbsym.simulation.watching import Watching
 
 if TYPE_CHECKING:
@@ -136,7 +136,9 @@ def simulate(
         both = energies(dynamics, dense, held)
         followed = kept_integrals(dynamics, motion, integrals, held, dense)
         own = cost(dynamics, motion.method, request.arithmetic, motion.work)
-        if motion.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
+        if chosen.why == NOTHING_MOVES:
+            error = NoEstimate(Lacking.NOTHING)
+        elif motion.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
             limit = inf if request.estimate else max(LEAST, AT_MOST * own)
             how = dynamics, motion, chosen.method, request.arithmetic, chosen.completed, limit
             known = recall if request.estimate else anew  # to look for a short one takes longer than to make it

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, pi
 from typing import Any, overload
 
@@ -18,7 +18,8 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import Choice, choose, resumed
 from mbsym.numerics.planning.reduced import Reduced
-from mbsym.numerics.separable import Separate, completing, separated
+from mbsym.numerics.separable import Separate, completing, held, separated
+from mbsym.numerics.simulate import begins_in_equilibrium
 from mbsym.simulation.request import TOLERANCE, Request
 from mbsym.simulation.result import Chosen, PartMethod
 
@@ -78,6 +79,10 @@ def sample_times(request: Request, frequency: float, system: System) -> Any:
 # What a request leaves open, settled before the first step: the method and the times of the samples.
 
 
+#: Why any method does.
+NOTHING_MOVES = Message("nothing moves, so nothing is integrated")
+
+
 def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) -> Chosen:
     """Everything that was not asked for; ``resting`` is taken out of the integration where that is proved."""
     taken = resting if resting is not None and resting.proved else None
@@ -92,6 +97,9 @@ def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) ->
     setting = Setting(None if fixed else tolerance, request.step, request.step_limit, request.longest)
     if taken is not None:
         method = completing(taken, method)
+    rested = request.earlier is None or np.all(request.earlier.states == request.earlier.states[:, :1])
+    if (request.method == "auto" or may_change(request)) and rested and begins_in_equilibrium(dynamics):
+        method, choices = held(dynamics, method), [replace(choices[0], why=NOTHING_MOVES, measured="")]
     frequency = max(choice.frequency for choice in choices)
     times = sample_times(request, frequency, dynamics.system)
     why = joined(dict.fromkeys(choice.why for choice in choices), "; ")

@@ -133,8 +133,9 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
         text = "no other run is as exact as these in as little time (--all-rows shows every run):"
         yield line("  ", say(Message(text)))
     yield _runs(study, every)
-    for name, reason in trade.unusable:
-        yield line("  ", (say(Message("[[method]]: not used: [[why]]", method=name, why=reason)), "yellow"))
+    for reason in dict.fromkeys(reason for _, reason in trade.unusable):
+        names = ", ".join(name for name, why in trade.unusable if why == reason)
+        yield line("  ", (say(Message("[[method]]: not used: [[why]]", method=names, why=reason)), "yellow"))
     if len(study.models) > 1:
         yield _models(study)
     text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, VAN_DER_POL, filed
+from conftest import SHIPPED, VAN_DER_POL, filed, invoked
 from numerics.test_methods import POLE
 from test_simulate import DOUBLE, mbsym, summary, table, written
 
@@ -286,3 +286,14 @@ def test_a_run_is_continued_in_its_own_variables(tmp_path: Path) -> None:
             words = ("--time", "2", "--format", "csv", "--no-estimate", "--out", str(tmp_path / "longer"), *options)
             done = mbsym(name, *words, "--continue", file)
             assert done.exit_code == (0 if earlier == kind else 2), done.output
+
+
+def test_a_rest_is_continued_as_one(tmp_path: Path) -> None:
+    """Upright at pi: what was not integrated is not integrated further, and roundings do not begin to grow."""
+    text = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
+    (tmp_path / "p.yaml").write_text(text, encoding="utf-8")
+    words = ["simulate", tmp_path / "p.yaml", "--set", "theta=pi", "--set", "theta_dot=0", "--format", "csv"]
+    invoked(*words, "--time", "20", "--out", tmp_path / "a", code=0)
+    invoked(*words, "--time", "60", "--continue", tmp_path / "a" / "simulation.json", "--out", tmp_path / "b", code=0)
+    last = (tmp_path / "b" / "trajectory.csv").read_text(encoding="utf-8").splitlines()[-1].split(",")
+    assert [float(x) for x in last[:3]] == [60, np.pi, 0]

@@ -20,6 +20,7 @@ from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.runge_kutta import RungeKutta
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.methods.tableaux import DOP853, RODAS5P
+from mbsym.numerics.simulate import Rests
 from mbsym.numerics.trade.comparison import Comparison, Difference
 from mbsym.report.runs.simulation_words import error_json, error_lines, warnings
 from mbsym.report.runs.summary import result_lines
@@ -347,6 +348,20 @@ def test_a_motion_that_begins_in_an_equilibrium(angle: str, begins: bool) -> Non
     assert run.begins_in_equilibrium is begins
     assert any(title == "motion" for title, _ in result_lines(run, "x.yaml")) is begins
     assert run.trajectory.work.steps < 5000  # the rounding of pi does not rule them
+
+
+def test_what_begins_in_an_equilibrium_is_exact_without_a_plan() -> None:
+    """a = pi stays: upright, roundings would grow as exp(3.13 t); nothing is planned, every row is the first."""
+    upright = mbsym.loads(UPRIGHT.replace("ANGLE", "pi"))
+    run = mbsym.simulate(upright, 30, accuracy=1e-9)
+    assert run.plan is None
+    assert run.trajectory.work.evaluations == 0
+    assert np.all(run.trajectory.states == [[np.pi], [0]])
+    assert np.all(run.at([0.1, 29.9]) == [[np.pi] * 2, [0] * 2])
+    assert np.all(mbsym.simulate(upright, 30)["a"] == np.pi)
+    assert not np.all(mbsym.simulate(upright, 30, method="rk45")["a"] == np.pi)  # as it was asked for
+    with pytest.raises(Rests):
+        mbsym.plan(upright, 30, 1e-9)
 
 
 @pytest.mark.parametrize("start", ["{a: {position: pi, velocity: 1}}", "{a: pi}"])

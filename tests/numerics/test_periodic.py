@@ -434,3 +434,28 @@ def test_an_orbit_does_not_depend_on_the_origin(keep: str) -> None:
     w = np.sqrt(1 + square)
     assert square > 1e-4
     assert found.period == pytest.approx(4 * ellipk(square / (2 * w**2)) / w, rel=1e-7)
+
+
+@pytest.mark.parametrize("stiffness", [2.0, -1.0, -4.0, 30.0])
+def test_multipliers_are_told_to_their_own_error(stiffness: float) -> None:
+    """x'' = -x - x^3 from x = 1 has the period T = 4 K(1/4) / sqrt(2); y'' = -c y beside it exp(+-i sqrt(c) T).
+
+    The period of x hangs on its energy: 1 is a double multiplier with one eigenvector, and what roundings make of it
+    says nothing of the others.
+    """
+    text = f"""
+mbsym: 1
+name: Duffing beside a spring
+bodies:
+  - {{name: a, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}}
+  - {{name: b, attached to: 0, connection point: [0, y, 0], mass: 1, coordinates: [y]}}
+loads: [{{potential: x**2/2 + x**4/4 + ({stiffness})*y**2/2}}]
+initial: {{x: 1, y: 0}}
+"""
+    period = 4 * ellipk(0.25) / np.sqrt(2)
+    orbit = mbsym.orbit(mbsym.loads(text), 1.001 * period).orbit
+    assert orbit.period == pytest.approx(period, rel=1e-14)
+    assert np.sum(orbit.multipliers == 1) == orbit.trivial == 2
+    exact = np.exp(1j * np.sqrt(complex(stiffness)) * period * np.array([1, -1]))
+    error = max(np.min(np.abs(orbit.others - mu)) for mu in exact)
+    assert error <= orbit.uncertainty < 1e-13 * max(100.0, 10 * np.max(np.abs(exact)))

@@ -175,8 +175,8 @@ class Trade:
         ratios = [log10(a["error"] / b["error"]) / log10(2) for a, b in pairwise(ladder)]
         assert min(ratios) - 1e-9 <= order["measured"] <= max(ratios) + 1e-9
 
-    def unused(self, method: str, why: str) -> None:
-        assert {"method": method, "why": why} in self.file["not_used"]
+    def unused(self, methods: str, why: str) -> None:
+        assert methods.split(", ") == [left["method"] for left in self.file["not_used"] if left["why"] == why]
 
     def costs(self, reference: str, runs: str, budget: str) -> None:
         assert as_told(reference, self.file["reference"]["cost"])
@@ -264,7 +264,7 @@ class Trade:
             ),
             r"method +setting +error +drift .*front" if self.every else r"method .*time": lambda: None,
             r"no other run is as exact as these in as little time \(--all-rows shows every run\):": lambda: None,
-            r"(\w[\w-]*): not used: (.*)": self.unused,
+            r"([\w-]+(?:, [\w-]+)*): not used: (.*)": self.unused,
             rf"([\w-]+), (\w+): measured order ({N}), nominal (\d+) \(halvings of the step: (\d+)\)": self.order,
             rf"cost: ({N}) for the reference, ({N}) for the runs, of a budget of ({N}); counted work.*": self.costs,
             r"model +what it neglects +error +operations +time": lambda: None,

@@ -240,14 +240,13 @@ def nearly_singular(time: Any, state: Any) -> Breakdown:
     return Breakdown(Cause.SINGULAR_CONSTRAINTS, message, time, state)
 
 
-def refuse(dynamics: Dynamics, method: str) -> None:
+def refuse(dynamics: Dynamics) -> None:
     """Raises Unusable for a method that does not lead states back, where there is something to be kept."""
     if dynamics.constraints is not None:
         listed = dynamics.constraints.told()
-        raise Unusable(Message("[[method]] does not keep to constraints ([[which]])", method=method, which=listed))
+        raise Unusable(Message("constraints are not kept to ([[which]])", which=listed))
     if dynamics.correction is not None:
-        text = "[[method]] does not keep quaternions and unit vectors at their lengths"
-        raise Unusable(Message(text, method=method))
+        raise Unusable(Message("quaternions and unit vectors are not kept at their lengths"))
 
 
 class LedRun:

@@ -474,11 +474,11 @@ def without_potential(system: System, values: Mapping[str, Fraction]) -> tuple[s
     return tuple(dict.fromkeys(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(load).__name__).lower() for load in acting))
 
 
-def unsuited(system: System, values: Mapping[str, Fraction], name: str) -> Message | None:
+def unsuited(system: System, values: Mapping[str, Fraction]) -> Message | None:
     """Why a method that takes its forces from a potential does not suit a system; None where it does."""
     loads = without_potential(system, values)
-    words = "[[name]] is for conservative systems, and these loads are given without a potential: [[loads]]"
-    return Message(words, name=name, loads=", ".join(loads)) if loads else None
+    words = "for conservative systems only, and these loads are given without a potential: [[loads]]"
+    return Message(words, loads=", ".join(loads)) if loads else None
 
 
 @dataclass(frozen=True)
@@ -507,8 +507,8 @@ class Symplectic:
         self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64, initial: Any = None, at: float = 0.0
     ) -> MidpointRun:
         """A run in (q, p).  Raises Unusable where a load has no force function, and with constraints."""
-        refuse(dynamics, self.name)
-        if (reason := unsuited(dynamics.system, dynamics.fixed_values, self.name)) is not None:
+        refuse(dynamics)
+        if (reason := unsuited(dynamics.system, dynamics.fixed_values)) is not None:
             raise Unusable(reason)
         if not available(scalar) or scalar not in self.traits.scalars:
             raise Unusable(Message("[[name]] does not run in [[scalar]] here", name=self.name, scalar=scalar))

@@ -34,7 +34,7 @@ from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
 from mbsym.numerics.orbits.variational import Flow
 
 #: Newton's steps at most, and how small what is left over must be, as part of the motion's size.
-MOST_STEPS, CLOSED = 40, 1e-11
+MOST_STEPS, CLOSED = 40, 1e-15
 
 #: What rounding and a motion that is hard to follow may leave over, once so many steps bring nothing more.
 NEARLY, PATIENCE = 1e-8, 3
@@ -57,6 +57,9 @@ AS_FAR = 100.0
 
 #: Singular values below this part of the largest are those of directions along which the orbit may be moved.
 RANK = 1e-9
+
+#: Phi is computed again with so much coarser a tolerance.
+COARSER = 10.0
 
 #: A vector is an eigenvector for 1 if Phi moves it by less, as part of |Phi| and its own length.
 FIXED = 1e-7
@@ -82,8 +85,9 @@ class Orbit:
     """A periodic motion x(t + T) = x(t) + turns, which are whole revolutions or what a coordinate is shifted by.
 
     ``closure`` is |x(T) - x0 - turns| as part of the motion's size, by the method that found it; ``verified`` the same
-    by ``verifier``, another method.  ``multipliers`` are in decreasing order of size; ``uncertainty`` is how far they
-    move when Phi is computed with another tolerance.  ``trivial`` of them are 1 for the ``reasons``.
+    by ``verifier``, another method.  ``multipliers`` are in decreasing order of size; ``trivial`` of them are 1 for the
+    ``reasons``, and ``uncertainty`` is how far the others move when Phi is computed with another tolerance a period
+    later.
     """
 
     names: tuple[str, ...]
@@ -414,14 +418,18 @@ def _orbit(
             Message("Newton's method has found a state of rest: begin farther away from it, or keep the energy")
         )
     _, phi = flow.passage(state, 0.0, period)
-    _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
+    # From where the motion comes back to, in a time that is as far from the period as this may be.
+    beside = period * (1 + place.closure) if free else period
+    _, other = Flow(dynamics, COARSER * flow.tolerance).passage(place.end - turns, 0.0, beside)
     basis = _allowed(dynamics, state, scale)
     phi, other = (
         basis.T @ (matrix * scale / scale[:, None]) @ basis for matrix in (phi, other)
     )  # in parts of the sizes
-    multipliers = _sorted(np.linalg.eigvals(phi))
-    uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
-    reasons, count = _trivial(dynamics, state, period, phi, path if free else None, basis, energy, scale)
+    reasons, others = _trivial(dynamics, state, period, phi, path if free else None, basis, energy, scale)
+    count = len(phi) - others.shape[1]
+    found, again = (np.linalg.eigvals(others.T @ matrix @ others) for matrix in (phi, other))
+    multipliers = _sorted(np.append(found, np.ones(count)))
+    uncertainty = 2 * _distance(found, again) + float(np.finfo(float).eps * np.linalg.norm(phi))
     verified, verifier = _verified(dynamics, state, period, turns, scale)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     det = float(np.linalg.det(phi))
@@ -462,13 +470,15 @@ def _distance(a: Any, b: Any) -> float:
 
 def _trivial(
     dynamics: Dynamics, state: Any, period: float, phi: Any, path: Any, basis: Any, energy: _Energy, scale: Any
-) -> tuple[tuple[Trivial, ...], int]:
-    """The reasons for multipliers 1 that hold at this Phi, and for how many of them they stand.
+) -> tuple[tuple[Trivial, ...], Any]:
+    """The reasons for multipliers 1 that hold at this Phi, and an orthonormal basis X (columns) of what they leave.
 
     Phi and its vectors are told in ``basis``, of the changes that constraints allow, or all, in parts of ``scale``.
     ``path`` is what the motion passes in a period at its speed here; None where the period is not free.
 
-    Right eigenvectors span V, left ones W; where W vanishes on V, 1 has at least the multiplicity dim V + dim W.
+    Right eigenvectors span V, left ones W.  Where W vanishes on V, Phi maps V and the kernel of W to themselves, 1 has
+    at least the multiplicity dim V + dim W, and the others are the eigenvalues of X^T Phi X, X the part of that kernel
+    across V: a double 1, which roundings part by their root, is no matter of them.  Else the larger of V, W counts.
     """
     n, names = dynamics.size, dynamics.system.coordinates
     right: list[Any] = []
@@ -501,9 +511,12 @@ def _trivial(
         if moved < FIXED:
             reasons.append(Trivial(reason, moved))
             (right if is_right else left).append(vector / length)
-    ranks = [int(np.linalg.matrix_rank(np.array(rows), tol=1e-6)) if rows else 0 for rows in (right, left)]
-    crossing = bool(right and left) and float(np.max(np.abs(np.array(left) @ np.array(right).T))) > 1e-6
-    return tuple(reasons), max(ranks) if crossing else sum(ranks)
+    width = basis.shape[1]
+    ones, duals = (np.reshape(rows, (-1, width)) for rows in (right, left))
+    if float(np.max(np.abs(duals @ ones.T), initial=0.0)) > 1e-6:
+        ones, duals = max(ones, duals, key=lambda rows: int(np.linalg.matrix_rank(rows, tol=1e-6))), duals[:0]
+    _, lengths, ways = np.linalg.svd(np.vstack([ones, duals]))
+    return tuple(reasons), ways[int(np.sum(lengths > 1e-6)) :].T
 
 
 def _verified(dynamics: Dynamics, state: Any, period: float, turns: Any, scale: Any) -> tuple[float, str]:

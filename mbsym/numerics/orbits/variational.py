@@ -257,6 +257,7 @@ class Flow:
         self.columns = len(directions)
         self._lead = lead(dynamics) if dynamics.constraints is not None and directions else None
         augmented = Variational(dynamics, directions) if directions else dynamics
+        self.tolerance = tolerance
         self.run = METHODS[method].start(augmented, Setting(tolerance, step_limit=step_limit), scalar)
 
     def led(self, state: Any) -> Any:

@@ -85,7 +85,7 @@ def _motion(context: Asked, request: Command, result: Motion) -> Answer:
 
         say = Language(run.system.language).say
         lines += [heading(say(Message("derivatives"))), facts(sensitivity_sentences(result.derivatives))]
-    last = [] if request.accuracy is None else _repeat(context, request, run.request)
+    last = [] if run.plan is None else _repeat(context, request, run.request)
     complaints, code = _ended(run, context.folder)
     if code is Exit.OK:
         complaints, code = _underived(result)
@@ -199,6 +199,7 @@ def refused(error: Exception, context: Asked, request: Command) -> Refusal | Non
     """Of a run that cannot be begun."""
     from mbsym.algebra.failures import Failure, SingularPoint
     from mbsym.numerics.methods.interface import Breakdown
+    from mbsym.numerics.simulate import Rests
 
     say = Language(context.motion.system.language).say
     nothing = say(NOTHING_WRITTEN)
@@ -208,6 +209,8 @@ def refused(error: Exception, context: Asked, request: Command) -> Refusal | Non
     if isinstance(error, Breakdown):
         text = Message("the motion does not come to the end, so nothing can be planned: [[why]]", why=error.told)
         return Refusal(f"error[no-plan]: {say(text)}", Exit.BROKEN_DOWN, (nothing,))
+    if isinstance(error, Rests):
+        return refused_because("error[rests]: there is nothing to plan", error)
     if isinstance(error, SingularPoint):
         text = Message("singular at these values: [[why]]", why=error.reason)
         return Refusal(f"error[singular]: {say(text)}", Exit.BROKEN_DOWN, (nothing,))

@@ -302,8 +302,9 @@ def _check_method(
         hint = Message("leave --step out, give a --tolerance, or take a method of fixed step: [[names]]", names=fixed)
         message = Message("[[method]] chooses its steps by a --tolerance", method=name)
         wrong.complain("--step", "conflicting-options", message, hint)
-    reason = unsuited(system, values, name) if traits.conservative else None
+    reason = unsuited(system, values) if traits.conservative else None
     if reason is not None:
+        reason = joined((name, reason), ": ")
         wrong.complain("--method", "unsuitable-method", reason, "for any system: --method auto, dop853 or rk4")
 
 

@@ -34,7 +34,7 @@ def plan(
         (True, True, ['model', 'integration', 'arithmetic'])
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``; Breakdown where the motion does not
-    come to the end.
+    come to the end, ``mbsym.numerics.simulate.Rests`` where nothing moves.
     """
     from mbsym import simulation
     from mbsym.numerics.scenario import scenario
