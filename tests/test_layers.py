@@ -137,8 +137,8 @@ UNUSED = (
     "importlib.resources",
     "mbsym.algebra.polynomial_systems",
     "mbsym.problems.relative_equilibria.equilibria",
-    "mbsym.problems.reduction",
-    "mbsym.mechanics.constraints.rows",
+    "mbsym.problems.constraints.analysis",
+    "mbsym.mechanics.constraints.states",
     *PARTS,
 )
 

@@ -229,7 +229,7 @@ def _general(analysis: Analysis) -> Verdict | None:
     """What velocity constraints leave to the energy without them, at all parameters; None where that is nothing."""
     if all(map(is_holonomic, analysis.system.constraints)):
         return None
-    verdict = Judge(in_velocities(analysis)).for_all(undecided(Because.ORDER_DECIDES))
+    verdict = Judge(in_velocities(analysis)).for_all(undecided(Because.VALUES_DECIDE))
     return None if verdict.word.open or verdict.word is Word.DEPENDS else verdict
 
 
