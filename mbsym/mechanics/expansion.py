@@ -29,12 +29,13 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.tree import reached
+from mbsym.expressions.tree import KINKED, Call, Expression, Negative, Number, Operation, reached, walk
 from mbsym.mechanics.constraints.rows import Row as ConstraintRow
 from mbsym.mechanics.constraints.rows import constraint_rows
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import carried, motion_derivatives, motion_values, relations
 from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.variables import expressions
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: A linear form in deviations: polynomials by the number of the deviation.
@@ -93,7 +94,7 @@ def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expans
     SingularPoint.
     """
     base = _completed(scene, signs)
-    jets = over_jets(scene, base, whole)
+    jets = over_jets(scene, base, whole, order=1 if _is_smooth(scene.system) else 2)
     rows = constraint_rows(jets)
     n = len(scene.system.coordinates)
     ring = scene.ring
@@ -140,6 +141,21 @@ def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expans
         conditions=tuple(conditions),
         assumed=_factors(ring, signs, (*held.assumed, *moved.assumed)),
         lost=lost,
+    )
+
+
+def _is_whole(exponent: Expression) -> bool:
+    x = exponent.operand if isinstance(exponent, Negative) else exponent
+    return isinstance(x, Number) and x.value.denominator == 1
+
+
+def _is_smooth(system: System) -> bool:
+    """Whether no root, kink or jump occurs: jets of first order do not tell sqrt(x^2 + y^2) from 0."""
+    return not any(
+        (isinstance(x, Call) and (x.table is not None or x.function in ("sqrt", *KINKED)))
+        or (isinstance(x, Operation) and x.operator == "**" and not _is_whole(x.right))
+        for expression in expressions(system)
+        for x in walk(expression)
     )
 
 

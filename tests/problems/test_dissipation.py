@@ -306,6 +306,8 @@ def test_drag_that_grows_with_the_square_of_the_speed(force: dict[str, str], law
 def test_a_force_with_a_kink_has_no_first_approximation(force: str) -> None:
     with pytest.raises(Unavailable, match="kink"):
         point({"generalized force": {"x": force}}).stability  # noqa: B018
+    with pytest.raises(Unavailable, match="kink"):
+        point({"generalized force": {"x": force}}, constraints=[{"velocity": "x_dot = 2*y_dot"}]).linearisation  # noqa: B018
 
 
 @pytest.mark.parametrize(
