@@ -392,8 +392,14 @@ def test_a_nonnegative_parameter_comes_out_of_a_root() -> None:
 
 MORE = "mechanics.loads.newtonian_orders"
 PLANTED = [
-    (3, MORE + ":legendre", "Fraction(2 * k - 1, k)", "Fraction(2 * k + 1, k)", "equations of motion"),
-    (4, MORE + ":legendre", "ahead - behind", "ahead + behind", "equations of motion"),
+    (
+        3,
+        MORE + ":gegenbauer",
+        "Fraction(2 * k + exponent - 2, k)",
+        "Fraction(2 * k + exponent, k)",
+        "equations of motion",
+    ),
+    (4, MORE + ":gegenbauer", "-ahead - behind", "-ahead + behind", "equations of motion"),
     (3, MORE + ":order_force_function", "(-1) ** degree", "1", "equations of motion"),
     (3, MORE + ":_spread", "(-3, ec, one)", "(3, ec, one)", "equations of motion"),
     (3, MORE + ":_spread", "(15 * half, x, ee)", "(9 * half, x, ee)", "equations of motion"),
