@@ -229,11 +229,14 @@ class Method(Protocol):
 
 
 class Unusable(Exception):
-    """A method that does not apply here; the message says why and what to use instead."""
+    """A method that does not apply here; the message says why and what to use instead.
 
-    def __init__(self, reason: str = "") -> None:
-        super().__init__(reason)
+    ``reason`` is that without the ``method``: it may be one for several.
+    """
+
+    def __init__(self, reason: str = "", method: str = "") -> None:
         self.reason = worded(reason)
+        super().__init__(Message("[[what]]: [[why]]", what=method, why=self.reason) if method else reason)
 
 
 # What a run meets on its way that is not smooth, or narrow.

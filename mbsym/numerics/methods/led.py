@@ -240,13 +240,13 @@ def nearly_singular(time: Any, state: Any) -> Breakdown:
     return Breakdown(Cause.SINGULAR_CONSTRAINTS, message, time, state)
 
 
-def refuse(dynamics: Dynamics) -> None:
+def refuse(dynamics: Dynamics, method: str) -> None:
     """Raises Unusable for a method that does not lead states back, where there is something to be kept."""
     if dynamics.constraints is not None:
         listed = dynamics.constraints.told()
-        raise Unusable(Message("constraints are not kept to ([[which]])", which=listed))
+        raise Unusable(Message("constraints are not kept to ([[which]])", which=listed), method)
     if dynamics.correction is not None:
-        raise Unusable(Message("quaternions and unit vectors are not kept at their lengths"))
+        raise Unusable(Message("quaternions and unit vectors are not kept at their lengths"), method)
 
 
 class LedRun:

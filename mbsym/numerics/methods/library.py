@@ -41,7 +41,7 @@ class LibraryRun(Stepping):
         self._kinds = variables(dynamics)
         self._led = lead(dynamics)
         if not method.traits.led:
-            refuse(dynamics)
+            refuse(dynamics, method.traits.name)
         if setting.longest is not None:
             self._options["max_step"] = setting.longest
         if method.traits.implicit:

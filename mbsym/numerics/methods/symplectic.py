@@ -507,9 +507,9 @@ class Symplectic:
         self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64, initial: Any = None, at: float = 0.0
     ) -> MidpointRun:
         """A run in (q, p).  Raises Unusable where a load has no force function, and with constraints."""
-        refuse(dynamics)
+        refuse(dynamics, self.name)
         if (reason := unsuited(dynamics.system, dynamics.fixed_values)) is not None:
-            raise Unusable(reason)
+            raise Unusable(reason, self.name)
         if not available(scalar) or scalar not in self.traits.scalars:
             raise Unusable(Message("[[name]] does not run in [[scalar]] here", name=self.name, scalar=scalar))
         state = initial_state(dynamics, SCALARS[scalar].dtype) if initial is None else initial
