@@ -56,6 +56,15 @@ def test_what_is_positive_whatever_the_parameters_are_decides(stiffness: str) ->
     assert mbsym.loads(POINT.format(stiffness=f"-({stiffness})")).stability.verdict.word is Word.UNSTABLE
 
 
+@pytest.mark.parametrize("stiffness", POSITIVE[:4])
+def test_and_under_constraints(stiffness: str) -> None:
+    """5 m x'' + k x = 0 of a second mass with y' = 2 x'."""
+    second = "  - {{name: s, attached to: 0, mass: m, connection point: [0, y, 0], coordinates: [y]}}\n"
+    text = POINT.replace("loads:", f"{second}constraints: [{{{{velocity: y_dot = 2*x_dot}}}}]\nloads:")
+    assert mbsym.loads(text.format(stiffness=stiffness)).stability.verdict.word is Word.STABLE
+    assert mbsym.loads(text.format(stiffness=f"-({stiffness})")).stability.verdict.word is Word.UNSTABLE
+
+
 @pytest.mark.parametrize("angle", ["pi/12", "pi/7", "1/3", "atan(2/3)"])
 def test_an_angle_that_is_a_number_leaves_no_condition(angle: str) -> None:
     assert mbsym.loads(ROD.format(angle=angle)).stability.verdict.word is Word.UNSTABLE
