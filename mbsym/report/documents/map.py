@@ -94,7 +94,7 @@ class MapCheck(Part, frozen=True):
 
     points: Annotated[int, "points in regions"]
     arcs: Annotated[int, "points on arcs"]
-    enclosed: Annotated[int, "points in regions at which eigenvalues in balls decide all counts"]
+    enclosed: Annotated[int, "points in regions at which enclosures of the eigenvalues decide all counts"]
     findings: Annotated[list[Finding], "what did not agree"]
 
 

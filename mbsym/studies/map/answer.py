@@ -364,9 +364,9 @@ def _checked(chart: Map, planes: Sequence[Map]) -> Iterator[str]:
     message = Message("check: [[points]] in regions agree", points=more)
     if arcs:
         message = Message("check: [[points]] in regions and [[arcs]] agree", points=more, arcs=Counted(arcs, "arc"))
-    by_balls = Message("eigenvalues in balls exclude none of the counts, and decide none")
+    by_balls = Message("enclosures of the eigenvalues exclude none of the counts, and decide none")
     if enclosed:
-        by_balls = Message("at [[count]] of them eigenvalues in balls confirm the counts", count=enclosed)
+        by_balls = Message("at [[count]] of them enclosures of the eigenvalues confirm the counts", count=enclosed)
     yield joined((message, by_balls), "; ")
 
 
