@@ -203,7 +203,7 @@ def _strayed(run: Simulation) -> Message:
     gaps, sizes = np.max(np.abs(states - states[:, :1]), axis=1), np.max(np.abs(states), axis=1)
     far = int(np.argmax(gaps))
     if gaps[far] <= STRAYED * np.finfo(float).eps * sizes[far]:
-        return Message("none: it rests in this run, too")
+        return Message("none: no coordinate changes in this run, either")
     text = "[[name]] strays by up to [[gap]] by roundings (they grow where an equilibrium is unstable)"
     return Message(text, name=[*run.dynamics.inputs][1 + far], gap=f"{gaps[far]:.1e}")
 
