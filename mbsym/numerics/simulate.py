@@ -522,7 +522,7 @@ def diagnosed(dynamics: Dynamics, breakdown: Breakdown, past: Any) -> Breakdown:
 def _goes_on(dynamics: Dynamics, t: float, state: Any, begin: float) -> bool:
     """Whether positions near a state keep the constraints a little later; those that stand still always have some."""
     constraints = dynamics.constraints
-    if constraints is None or dynamics.is_scleronomic:
+    if constraints is None or constraints.steady:
         return True
     return any(constraints.led(t + part * (t - begin), state) is not None for part in LATER)
 

@@ -175,8 +175,8 @@ def constrained_dynamics(
     loads do.  Without rows it is ``forward_dynamics``, which may know a cheaper way.
     """
     if not chosen.rows:
-        free, still = forward_dynamics(system, ring, apart=apart, pushed=pushed), [0] * len(system.coordinates)
-        nothing = tuple(map(free.program.number, still))
+        free = forward_dynamics(system, ring, apart=apart, pushed=pushed)
+        nothing = (free.program.zero,) * len(system.coordinates)
         return ConstrainedDynamics(
             free.program, free.environment, (), free.accelerations, (), free.pivots, (), nothing, nothing
         )

@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass
 from enum import Enum, StrEnum, auto, member, unique
-from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Code, Message, enumerated, joined
-
-if TYPE_CHECKING:
-    pass
 
 
 class Word(StrEnum):
