@@ -220,7 +220,7 @@ def test_a_signal_during_a_batch_leaves_whole_reports(tmp_path: Path) -> None:
 def test_tracebacks_are_shown_where_they_are_wanted(tmp_path: Path) -> None:
     planted = (
         "import sys, mbsym_cli.check as check\n"
-        "def broken(*_): raise RuntimeError('planted')\n"
+        "def broken(*_, **__): raise RuntimeError('planted')\n"
         "check.read_description = broken\n"
         "from mbsym_cli.main import main\nmain(sys.argv[1:])\n"
     )
