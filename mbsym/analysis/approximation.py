@@ -50,13 +50,13 @@ MOST_LISTED = 12
 
 def expanded(analysis: Analysis) -> Scene:
     """The system over second-order jets about the unperturbed motion.  Raises Unavailable where none is given."""
-    _demand_motion(analysis)
+    demand_motion(analysis)
     return over_jets(analysis.parameters_scene, given_motion(analysis.parameters_scene), analysis.system, 2)
 
 
 def reduced(analysis: Analysis) -> Reduced:
     """The system to first order about the unperturbed motion.  Raises Unavailable where none is given."""
-    _demand_motion(analysis)
+    demand_motion(analysis)
     scene, names = analysis.parameters_scene, analysis.system.coordinates
     signs, known = analysis.signs, analysis.ring.adjoined
     first_order = expansion(scene, signs, analysis.system)
@@ -106,7 +106,8 @@ def beside(analysis: Analysis, singular: Sequence[Displacement]) -> list[Polynom
     return equilibrium.beside(slopes, singular, ring.zero)
 
 
-def _demand_motion(analysis: Analysis) -> None:
+def demand_motion(analysis: Analysis) -> None:
+    """Raises Unavailable where the description gives no unperturbed motion; the hint says which one to try."""
     if not analysis.system.motion:
         names = analysis.system.coordinates
         listed = names if len(names) <= MOST_LISTED else names[:1]
@@ -122,7 +123,8 @@ def _demand_motion(analysis: Analysis) -> None:
             if rests is not None:
                 hint = Message(
                     "say with 'motion:' about which one; rest with all coordinates 0 is none, or only at special "
-                    "values of parameters"
+                    "values of parameters (mbsym equilibria [[file]] looks for others at given values)",
+                    file=FILE,
                 )
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
@@ -132,19 +134,8 @@ def _rests_at_zero(analysis: Analysis) -> bool | None:
     """Whether the description, were this its motion, had it at all values of the parameters; None if that is open."""
     still = MotionEntry(analysis.system.coordinates[0], Number(Fraction(0)), Number(Fraction(0)))
     resting = type(analysis)(replace(analysis.system, motion=(still,)), ())
-    if analysis.system.constraints or analysis.system.linear is not None:
-        try:
-            return resting.equilibrium.satisfied
-        except Unavailable:
-            return False
     try:
-        scene = resting.parameters_scene
-        resting_scene, moving = (over_jets(scene, given_motion(scene), resting.system, k) for k in (0, 1))
-        values = [-x.value for x in newton_euler.residuals(resting_scene).values()]  # nothing deviates here
-        rest_state = equilibrium.equilibrium(resting.parameters_scene, values, resting.signs)
-        if rest_state.satisfied and equilibrium.singular_displacements(moving, lambda: resting.expanded):
-            return resting.equilibrium.satisfied  # more is demanded there
-        return rest_state.satisfied
+        return resting.equilibrium.satisfied
     except (Failure, Unavailable):
         return None
 

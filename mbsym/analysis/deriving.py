@@ -376,6 +376,8 @@ def result_in_coordinates(source: Analysis, name: str) -> Any:
     try:
         return getattr(source.in_coordinates, name)
     except Unavailable as failure:
+        if failure.failure.code == "no-motion":  # what to try depends on the speeds
+            approximation.demand_motion(source)
         singular = name == "stability" and failure.failure.code == "singular-angles"
         judgement = in_other_angles(_same(source, source.system.without_speeds)) if singular else None
         if judgement is None or judgement.presumed:  # conditions that no problem 4 tells would be presumed

@@ -98,7 +98,7 @@ def test_where_the_budget_ends_nothing_is_said_of_rest(monkeypatch: pytest.Monke
     def out_of_terms(*_: object, **__: object) -> None:
         raise NoClosedForm("too many terms")
 
-    monkeypatch.setattr("mbsym.analysis.approximation.over_jets", out_of_terms)
+    monkeypatch.setattr("mbsym.analysis.approximation.expansion", out_of_terms)
     assert mbsym.loads(FALL, problems=(4,)).stage(4).failure.hint == "say with 'motion:' about which one"
 
 
