@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial
     from mbsym.analysis.pipeline import Analysis
     from mbsym.model.system import System
+    from mbsym.problems.constrained_balance import ConstrainedBalance
     from mbsym.problems.constraints.motion import Embedded
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.in_speeds import SpeedEquations
@@ -207,15 +208,11 @@ def balance_of(analysis: Analysis) -> Balance:
         redundant = () if tied is None or tied.in_speeds else tied.redundant
         proved = frozenset(row.name for row in redundant if row.certainty is Certainty.PROVED)
         about = analysis.reduced.about
-        return ConstrainedBalance(
-            analysis.scene,
-            energies,
-            analysis.signs,
-            {},
-            about=about,
-            following=proved,
-            **_of_the_steady_motions(analysis),
+        of_steady = _of_the_steady_motions(analysis)
+        balance = ConstrainedBalance(
+            analysis.scene, energies, analysis.signs, {}, about=about, following=proved, **of_steady
         )
+        return balance if of_steady.get("steady", 0) is not None else replace(balance, steady=_kept(analysis, balance))
     return dissipation.balance(
         analysis.parameters_scene if energies is None else analysis.held_scene, energies, analysis.signs
     )
@@ -224,14 +221,16 @@ def balance_of(analysis: Analysis) -> Balance:
 def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
     """Of a nonholonomic system: the position that velocities follow, and the dimension of the steady motions."""
     about = analysis.reduced.about
-    if about.holonomic or about.leaf or about.following:
+    if about.holonomic or about.leaf:
         return {}
+    if about.following:
+        return {"steady": None}
     from mbsym.problems.constraints.motion import oscillating_position, steady_motions
 
     derived = analysis.optional("equations")
     embedded = None if derived is None else derived.embedded
     if embedded is None:
-        return {}
+        return {"steady": None}
     ring, names = analysis.ring, analysis.system.coordinates
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
     position = oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded)
@@ -240,6 +239,18 @@ def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
     with suppress(SingularPoint):  # independent velocities may be singular on the motion
         steady = steady_motions(ring, embedded, names, about.idle, at, analysis.signs)
     return {"oscillating": position if rests else "", "steady": steady}
+
+
+def _kept(analysis: Analysis, balance: ConstrainedBalance) -> int | None:
+    """The dimension of the steady motions by first integrals that are proved; None if these do not tell."""
+    ring = analysis.ring
+    running = [g.name for g in ring.generators if g.kind in ("prescribed", "time")]
+    kept = [x.formula.polynomial for x in analysis.optional("integrals") or () if x.status is Certainty.PROVED]
+    at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
+    try:
+        return balance.steady_by([x for x in kept if not ring.dependencies(x, running)], at)
+    except Failure:
+        return None
 
 
 #: So many choices of independent velocities are tried.

@@ -10,7 +10,7 @@ forces do not act on it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,7 +19,9 @@ from flint import fmpq_mat
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.rates import velocity_name
 from mbsym.mechanics.constraints.rows import Row, RowName, said_rows
+from mbsym.mechanics.expansion import echelon
 from mbsym.mechanics.motion import turning
 from mbsym.problems.displacements import Direction, Displacements, among
 from mbsym.problems.dissipation import Balance, EnergyLaw
@@ -107,24 +109,48 @@ class ConstrainedBalance(Balance):
         except Failure:
             return False
 
+    def steady_by(self, integrals: Sequence[Polynomial], at: Mapping[int, Polynomial]) -> int | None:
+        """The rank, at the motion, of the differentials of first integrals along states that the constraints allow.
+
+        Where f is the motion's vector field (of what does not drop out), dI f = 0: so of the equations f = 0 as many
+        follow from the others as dI has rank.  If that is the dimension of the null space of df, steady motions near
+        the given one are a manifold of this dimension (implicit functions).  None where a symmetry by which coordinates
+        drop out changes an integral, or the rank hangs on what may vanish.
+        """
+        ring, about, names = self.ring, self.about, self.scene.system.coordinates
+        if about is None or self._rows is None or self.energy is None:
+            return None
+        if not all(self._absent_everywhere(name, integrals) or self._symmetric(name, integrals) for name in about.idle):
+            return None
+        variables = (*names, *map(velocity_name, names))
+        positions = (row.position for row in self._rows if row.position is not None)
+        rows: list[Mapping[Any, Polynomial]] = [
+            {k: ring.substitute(ring.derivative(x, name), at) for k, name in enumerate(variables)}
+            for x in (*positions, *self._velocity_rows, *integrals)
+        ]
+        rank = echelon(ring, self.signs, rows, range(len(variables)))
+        allowed = len(about.coordinates) + len(about.speeds)
+        return None if rank.assumed else len(rank.pivots) - (len(variables) - allowed)
+
     def shifts(self, name: str) -> bool:
         """Whether a shift of this coordinate, alone or with a linear map of others, is a symmetry (``closed``)."""
         return self._absent_everywhere(name) or self._symmetric(name)
 
-    def _absent_everywhere(self, name: str) -> bool:
-        entries = [x for row in self._rows or () for x in _entries(row)]
+    def _absent_everywhere(self, name: str, further: Sequence[Polynomial] = ()) -> bool:
+        entries = [*(x for row in self._rows or () for x in _entries(row)), *further]
         return name in self.absent and not any(self.ring.depends_on(x, name) for x in entries)
 
-    def _symmetric(self, name: str) -> bool:
+    def _symmetric(self, name: str, further: Sequence[Polynomial] = ()) -> bool:
         """Whether rational numbers W_ij and S_rk exist with which, i and j being absent coordinates,
 
             dT/d(name) + sum W_ij q'_j dT/dq'_i = 0,    dg_r/d(name) + sum W_ij q'_j dg_r/dq'_i = sum S_rk g_k,
 
         where neither the force function nor any other force knows the name or these i, nor f the name.  The shift is
         then a symmetry.  If it leaves the independent speeds as they are (the i are dependent), no equation of theirs
-        depends on the name; else it does, and the name has to rest if what is shifted is to be steady.
+        depends on the name; else it does, and the name has to rest if what is shifted is to be steady.  It leaves
+        the ``further`` functions as they are, too, as it does T.
         """
-        return self._maps(name, True) or (name in self._resting and self._maps(name, False))
+        return self._maps(name, True, further) or (name in self._resting and self._maps(name, False, further))
 
     @cached_property
     def _resting(self) -> set[str]:
@@ -132,7 +158,7 @@ class ConstrainedBalance(Balance):
         moving = {name for name, _ in self.about.rates} if self.about is not None else set()
         return {name for name in self.scene.system.coordinates if name not in moving} - set(turning(self.scene))
 
-    def _maps(self, name: str, dependent: bool) -> bool:
+    def _maps(self, name: str, dependent: bool, further: Sequence[Polynomial]) -> bool:
         """The symmetry of ``_symmetric`` with all i and j ``dependent``, or any."""
         ring, about, energies, rows = self.ring, self.about, self.energy, self._rows
         assert about is not None
@@ -150,7 +176,7 @@ class ConstrainedBalance(Balance):
             return False
         if any(not ring.velocity_derivative(x, y).is_zero() for x in forces for y in turned):
             return False
-        functions = [energies.kinetic_energy.polynomial, *(row.velocity for row in rows)]
+        functions = [energies.kinetic_energy.polynomial, *(row.velocity for row in rows), *further]
         equations = []
         for number, f in enumerate(functions):
             slopes = [ring.velocity_derivative(f, x) for x in turned]

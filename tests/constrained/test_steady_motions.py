@@ -231,3 +231,42 @@ def test_a_motion_that_keeps_its_constraints_only_under_a_condition_fails_no_che
     assert "FAILED" not in outcomes.values()
     assert outcomes["perturbed motion"] == outcome
     assert analysis.stability.numerical.word is Word.UNDECIDED
+
+
+TRICYCLE = """
+mbsym: 1
+name: tricycle with a trailer, its fork free to turn
+parameters: {L: {value: 1, sign: positive}, d: {value: 2, sign: positive}, J: {value: 1, sign: positive}, V: SPEED}
+bodies:
+  - {name: frame, attached to: 0, connection point: [x, y, 0], rotation: {axes: [3], angles: [th]}, mass: 3,
+     mass centre: [L/2, 0, 0], inertia about: mass centre, inertia: [J, J, J], coordinates: [x, y, th]}
+  - {name: fork, attached to: frame, connection point: [L, 0, 0], rotation: {axes: [3], angles: [de]}, mass: 1,
+     inertia about: joint, inertia: [1, 1, 1]}
+  - {name: trailer, attached to: frame, rotation: {axes: [3], angles: [ps]}, mass: 2, mass centre: [-d, 0, 0],
+     inertia about: mass centre, inertia: [1, 1, 1]}
+loads: [{generalised force: {de: FORCE}}]
+constraints:
+  - velocity: y_dot*cos(th) - x_dot*sin(th) = 0
+  - velocity: y_dot*cos(th + de) - x_dot*sin(th + de) + L*th_dot*cos(de) = 0
+  - velocity: y_dot*cos(th + ps) - x_dot*sin(th + ps) - d*(th_dot + ps_dot) = 0
+motion: {x: {rate: V}, y: 0, th: 0, de: 0, ps: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("speed", "force", "word"),
+    [
+        # L th' = v tan(de), th'' + de'' = 0: with w = th' + de' constant, de tends to L w/V and the car to a circle.
+        ("{value: 1, sign: positive}", "0", Word.ASYMPTOTIC_BUT_STEADY),
+        ("{value: -1, sign: negative}", "0", Word.UNSTABLE),
+        # Circles near by are no motions: th'' + de'' = -de^2 leaves de < 0, -de^3 brings it back.
+        ("{value: 1, sign: positive}", "-de**2", Word.UNDECIDED),
+        ("{value: 1, sign: positive}", "-de**3", Word.UNDECIDED),
+    ],
+)
+def test_circles_near_a_straight_course_are_found_by_what_is_conserved(speed: str, force: str, word: Word) -> None:
+    found = analysed(TRICYCLE.replace("SPEED", speed).replace("FORCE", force)).stability
+    assert found.numerical is not None
+    assert (found.verdict.word, found.numerical.word) == (word, word)
+    if word is Word.UNDECIDED:
+        assert found.numerical.because(Because.MORE_ZERO_ROOTS)
