@@ -65,7 +65,8 @@ class Closed:
     """``scenario`` begins on its constraints; ``moves`` are the values that had to be changed beyond roundings.
 
     ``closest`` says whether the position is the closest one, or only one near it; ``fixed`` are the values that stayed,
-    ``left_out`` the velocities that the description does not give.
+    ``left_out`` the velocities that the description does not give; ``follow``: these follow from those that it gives,
+    in the columns of the velocities left out J has their number as rank.
     """
 
     scenario: Scenario
@@ -73,6 +74,7 @@ class Closed:
     closest: bool = True
     fixed: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    follow: bool = True
 
     @property
     def given_stays(self) -> bool:
@@ -202,7 +204,8 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     moved = {name for name, old, new in zip(names, scenario.state, refined, strict=True) if old != new}
     typed = {name: value for name, value in scenario.typed.items() if name not in moved}
     new = replace(scenario, positions=tuple(refined[:p]), velocities=tuple(refined[p:]), typed=typed)
-    return Closed(new, moves(scenario, new, constraints), closest, held, scenario.unstated)
+    follow = searches[0].determined(np.array([float(x) for x in refined]))
+    return Closed(new, moves(scenario, new, constraints), closest, held, scenario.unstated, follow)
 
 
 def moves(given: Scenario, taken: Scenario, constraints: Constraints | None = None) -> tuple[Move, ...]:
@@ -257,6 +260,11 @@ class _Search:
             weights[free] = np.linalg.inv(np.linalg.cholesky((masses + masses.T) / 2)).T
         rows = values.velocities if velocity else values.positions
         return rows, values.partials[: len(rows)] @ weights, weights
+
+    def determined(self, state: Any) -> bool:
+        """Whether the velocities that are free follow from the others at this state."""
+        _, columns, _ = self.rows(state, True)
+        return bool(np.linalg.matrix_rank(columns, rtol=RANK) == columns.shape[1])
 
     def position(self, start: Any) -> tuple[Any, bool]:
         """A position on the constraints, and whether it is the closest one to ``start``.  Raises NotClosed."""

@@ -480,7 +480,7 @@ def _lost_rank(dynamics: Dynamics, initial: Any) -> str:
             "second order"
         )
         return Message(text, rank=rank) if known.obstructed(initial) else ""
-    text = "of [[usual]] constraint rows that are independent beside this position, [[rank]] are independent in it"
+    text = "of [[usual]] constraint rows that are independent beside this position, only [[rank]] are independent in it"
     return Message(text, usual=usual, rank=rank)
 
 

@@ -325,8 +325,34 @@ def test_velocities_that_were_left_out_follow_from_those_that_are_given() -> Non
     text = FOUR_BAR + "initial: {q1: {position: 2.1, velocity: 0.2}, q2: 0.6655470375077588, q3: 2.527408138024188}"
     found = closed(scenario(described(text)))
     assert found.given_stays
+    assert found.follow
     truth = json.loads((REFERENCES / "sympy_four_bar.json").read_text())["parameters"]["u"]
     assert [float(x) for x in found.scenario.velocities] == pytest.approx([float(x) for x in truth], abs=1e-12)
+
+
+PARALLELOGRAM = """
+mbsym: 1
+name: parallelogram in one line
+bodies:
+  - {name: left, attached to: 0, rotation: {axes: [3], angles: [a]}, mass centre: [1, 0, 0], mass: 1}
+  - {name: right, attached to: 0, connection point: [2, 0, 0], rotation: {axes: [3], angles: [b]},
+     mass centre: [1, 0, 0], mass: 1}
+  - {name: rod, attached to: left, connection point: [1, 0, 0], rotation: {axes: [3], angles: [c]},
+     mass centre: [1, 0, 0], mass: 1, inertia about: mass centre, inertia: [0, 1, 1]}
+constraints:
+  - coincide: [{body: rod, point: [2, 0, 0]}, {body: right, point: [1, 0, 0]}]
+"""
+
+
+@pytest.mark.parametrize(("angle", "follow"), [(0, False), (1, True)])
+def test_where_a_parallelogram_branches_no_velocity_follows_from_another(angle: int, follow: bool) -> None:
+    """In line a' + 2 (a' + c') = b' is all that is demanded: b' = 1 of the parallelogram, -3 of the other branch."""
+    given = f"initial: {{a: {{position: {angle}, velocity: 1}}, b: {angle}, c: {-angle}}}"
+    found = closed(scenario(described(PARALLELOGRAM + given)))
+    assert found.given_stays
+    assert found.follow is follow
+    if follow:
+        assert [float(x) for x in found.scenario.velocities] == pytest.approx([1, 1, -1], abs=1e-12)
 
 
 def test_coordinates_called_dependent_are_fitted_to_the_others() -> None:

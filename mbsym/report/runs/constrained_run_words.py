@@ -65,21 +65,18 @@ def rows_line(known: Constraints) -> Message:
 def start_lines(closed: Closed, system: System, linear: bool = False) -> Iterator[Message]:
     """How far the initial state was moved to satisfy the constraints; of a ``linear`` model to first order."""
     held = [Message("fixed: [[names]]", names=", ".join(closed.fixed))] if closed.fixed else []
+    satisfied = Message("the initial state satisfies the constraints")
+    if linear:
+        satisfied = Message("the initial state satisfies the constraints to first order about the unperturbed motion")
     if not closed.moves:
-        satisfied = "the initial state satisfies the constraints"
-        if linear:
-            satisfied = "the initial state satisfies the constraints to first order about the unperturbed motion"
-        yield joined([Message(satisfied), *held], "; ")
+        yield joined([satisfied, *held], "; ")
         return
     units = {x.name: pretty(unit_of(system, x.name)) for x in closed.moves}
     if closed.given_stays:
-        text = "the initial state satisfies the constraints; velocities that were left out follow from them"
-        if linear:
-            text = (
-                "the initial state satisfies the constraints to first order about the unperturbed motion; velocities "
-                "that were left out follow from them"
-            )
-        yield joined([Message(text), *held], "; ")
+        left_out = Message("velocities that were left out follow from those given")
+        if not closed.follow:
+            left_out = Message("velocities that were left out are as small as the constraints allow (mass matrix)")
+        yield joined([satisfied, left_out, *held], "; ")
         shown = [f"{x.name} = {with_unit(_shown(x.found), units[x.name])}" for x in closed.moves]
         yield joined([*shown[:MOST_MOVES], *(["..."] if len(shown) > MOST_MOVES else [])], ", ")
         return
