@@ -168,6 +168,8 @@ def _judged(analysis: Analysis) -> Stability:
     else:
         judged = judge.decided(judged, values)
     before = judgement.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None
+    if general.word.open and not judged.word.open and not analysis.system.parameters:
+        judgement = stability.with_verdict(judgement, judged)  # there are no other values
     return replace(judgement, numerical=judged, before_higher_order=before)
 
 

@@ -202,6 +202,51 @@ def test_each_group_of_coordinates_has_its_cases_in_order(tmp_path: Path) -> Non
     assert "otherwise unstable (Lyapunov's first method) if A - B < 0" in lines
 
 
+BALL = """
+mbsym: 1
+name: ball on a plane, held by a spring
+parameters: {r: positive, m: positive, I: positive, k: KIND}
+bodies:
+  - {name: ball, attached to: 0, connection point: [x, y, r], rotation: {axes: [3, 1, 2], angles: [p, q, s]}, mass: m,
+     coordinates: [x, y, p, q, s], inertia about: mass centre, inertia: [I, I, I]}
+loads: [{potential: k*(x**2 + y**2)/2}]
+constraints: [{rolling: {body: ball, point: [0, 0, -r], axes: 0, on: 0}}]
+motion: {x: 0, y: 0, p: 0, q: 0, s: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "verdict", "groups"),
+    [
+        ("positive", "stable but for a drift of cyclic coordinates (Lagrange-Dirichlet)", ()),  # the ball may spin
+        ("negative", "the whole system: unstable", ("x: unstable", "y: unstable", "p: undecided")),
+    ],
+)
+def test_groups_of_which_less_is_known_than_of_the_whole_are_not_told(
+    tmp_path: Path, kind: str, verdict: str, groups: tuple[str, ...]
+) -> None:
+    """m (x'^2 + y'^2)/2 + I w^2/2 + k (x^2 + y^2)/2 decides of x and y at once, not of each."""
+    first, *further = [x for x in told(tmp_path, BALL.replace("KIND", kind)) if "stable" in x or "undecided" in x]
+    assert first.startswith(f"Stability  {verdict}")
+    assert len(further) == len(groups)
+    assert all(map(str.startswith, further, groups))
+
+
+def test_without_parameters_there_are_no_other_values(tmp_path: Path) -> None:
+    """(y^2 + z^2)^2 has a strict minimum; of y^2 z^2, and y^3, there is none."""
+    text = """
+mbsym: 1
+name: particle
+bodies: [{name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}]
+loads: [{potential: POTENTIAL}]
+motion: {x: 0, y: 0, z: 0}
+"""
+    lines = told(tmp_path, text.replace("POTENTIAL", "x**2/2 + (y**2 + z**2)**2"))
+    assert [line for line in lines if "table" in line] == ["Stability  stable (Lagrange-Dirichlet)"]
+    lines = told(tmp_path, text.replace("POTENTIAL", "x**2/2 + y**3 + z**4"))
+    assert "Stability  stable" not in "\n".join(lines)
+
+
 def test_no_case_of_stability_stands_beside_a_verdict_of_instability(tmp_path: Path) -> None:
     """K = [[2 a, -1, b - a], [-1, b - 2, 1/2 - b - a], [b - a, 1/2 - b - a, b + 2]] is nowhere positive definite.
 

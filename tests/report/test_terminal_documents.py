@@ -44,7 +44,20 @@ FURTHER = {
 #: Notation of mathematics, and what is typed: keys, commands, files.
 NOTATION = {"sin", "cos", "sqrt", "exp", "log", "atan", "det", "grad", "const", "sum", "Mbar", "fbar", "lam"}
 TYPED = {"motion", "speeds", "orientation", "quaternion", "terms", "mbsym", "floquet", "explain", "description", "FILE"}
-TYPED |= {"report", "html", "results", "json", "systems", "yaml", "gravity", "gradient", "omega1", "omega2", "omega3"}
+TYPED |= {
+    "equilibria",
+    "report",
+    "html",
+    "results",
+    "json",
+    "systems",
+    "yaml",
+    "gravity",
+    "gradient",
+    "omega1",
+    "omega2",
+    "omega3",
+}
 
 
 def own_words(analysis: mbsym.Analysis) -> set[str]:

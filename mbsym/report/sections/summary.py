@@ -229,9 +229,15 @@ def _integrals(integrals: Sequence[Integral]) -> Iterator[Inline]:
 
 def _is_everywhere(stability: Stability) -> bool:
     """Whether the verdict at the given values is that for all values, and no number stands beside it."""
-    alike = [stability.verdict, stability.numerical, *(part.theory.verdict for part in stability.subsystems)]
+    alike = [stability.verdict, stability.numerical, *(part.theory.verdict for _, part in _telling(stability))]
     words = {(conclusion.word, conclusion.theorems) for conclusion in alike if conclusion is not None}
-    return len(words) == len(stability.subsystems) == 1 and stability.verdict.word.stable
+    return len(words) == 1 and stability.verdict.word.stable
+
+
+def _telling(stability: Stability) -> list[tuple[int, SubsystemStability]]:
+    """The groups of coordinates with their numbers, but those of which less is known than of the whole."""
+    parts = enumerate(stability.subsystems, start=1)
+    return [(k, x) for k, x in parts if not (stability.verdict.word.stable and x.theory.verdict.word.open)]
 
 
 def _at_values(stability: Stability, system: System) -> Inline:
@@ -259,16 +265,19 @@ def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
         yield from _what_would_decide(stability)
         return
     word = stability.verdict.word
-    lines_by_part = [list(_part(part, k, "")) for k, part in enumerate(stability.subsystems, start=1)]
-    alike = all(part.theory.verdict.word is word for part in stability.subsystems)
+    parts = _telling(stability)
+    lines_by_part = [list(_part(part, k, "")) for k, part in parts]
+    alike = all(part.theory.verdict.word is word for _, part in parts)
     together = alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in lines_by_part)
-    apart = ("; ", Said("each group of coordinates while the others keep to the motion"), ":")
-    whole = (Said("the whole system"), ": ", *verdict(stability.verdict, "verdict"))
-    yield Phrase((*presumed, *whole, *(() if together else apart)))
-    yield from _what_would_decide(stability)
+    whole = verdict(stability.verdict, "verdict")
     if together:
+        yield Phrase((*presumed, *whole))
+        yield from _what_would_decide(stability)
         return
-    for part, lines in zip(stability.subsystems, lines_by_part, strict=True):
+    apart = ("; ", Said("each group of coordinates while the others keep to the motion"), ":")
+    yield Phrase((*presumed, Said("the whole system"), ": ", *whole, *apart))
+    yield from _what_would_decide(stability)
+    for (_, part), lines in zip(parts, lines_by_part, strict=True):
         lines[:0] = _coefficients(part, lines, results.variable)
         yield Phrase((named(part.coordinates), ": ", lines[0]))
         yield from (Under((line,)) for line in lines[1:])
