@@ -247,6 +247,19 @@ motion: {x: 0, y: 0, z: 0}
     assert "Stability  stable" not in "\n".join(lines)
 
 
+def test_of_many_coordinates_the_first_and_the_last_are_told(tmp_path: Path) -> None:
+    bodies = [
+        f"  - {{name: p{k}, attached to: 0, mass: 1, connection point: [x{k}, 0, 0], coordinates: [x{k}]}}"
+        for k in range(30)
+    ]
+    text = "\n".join(["mbsym: 1", "name: thirty particles", "bodies:", *bodies, "motion: {x0: 0}", ""])
+    lines = told(tmp_path, text, "--problems", "4")
+    assert lines[:2] == [
+        "Coordinates  30: x0, x1, x2, ..., x29",
+        "Motion  satisfies the equations of motion identically",
+    ]
+
+
 def test_no_case_of_stability_stands_beside_a_verdict_of_instability(tmp_path: Path) -> None:
     """K = [[2 a, -1, b - a], [-1, b - 2, 1/2 - b - a], [b - a, 1/2 - b - a, b + 2]] is nowhere positive definite.
 

@@ -77,6 +77,9 @@ MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 #: More letters, or what they stand for in more characters, are left to problem 5.
 MOST_LETTERS, LONGEST_MEANINGS = 12, 200
 
+#: Of more coordinates the first ones and the last are told, and no motion.
+MOST_NAMES = 24
+
 #: More gains of a feedback are left to problem 8.
 MOST_GAINS = 24
 
@@ -154,7 +157,7 @@ def _facts(results: Results) -> Iterator[Fact]:
 def _size(system: System, solved: dict[int, Any]) -> Fact:
     """Coordinates, constraints, what is left of freedom, cyclic coordinates, inputs."""
     tied: Constraints | None = solved[3].constraints if 3 in solved else None
-    said: list[Inline] = [named(system.coordinates)]
+    said: list[Inline] = [_some(system.coordinates)]
     if len(system.coordinates) > 1:
         said.insert(0, f"{len(system.coordinates)}: ")
     if system.linear:
@@ -173,10 +176,14 @@ def _size(system: System, solved: dict[int, Any]) -> Fact:
     cyclic = [] if 2 not in solved or system.constraints else [x for x in solved[2].cyclic if not is_felt(x, solved)]
     cyclic = [name for name in cyclic if name in system.coordinates]  # the others are functions of time
     if cyclic:
-        said += ["; ", Said("$L$ does not contain"), " ", named(cyclic)]
+        said += ["; ", Said("$L$ does not contain"), " ", _some(cyclic)]
     if system.inputs:
         said += ["; ", say("inputs: $[[names]]$", names=named(x.name for x in system.inputs))]
     return Fact(Said("Coordinates"), (Phrase(tuple(said)),))
+
+
+def _some(names: Sequence[str]) -> Inline:
+    return named(names) if len(names) <= MOST_NAMES else Phrase((named(names[:3]), ", ..., ", Name(names[-1])))
 
 
 def _equations(solutions: dict[int, Any], system: System) -> Iterator[Inline]:
@@ -199,7 +206,8 @@ def _equations(solutions: dict[int, Any], system: System) -> Iterator[Inline]:
 
 def _motion(equilibrium: Equilibrium, system: System) -> Iterator[Inline]:
     items = unperturbed_motion(system)
-    inlines: tuple[Inline, ...] = (items, " ") if 0 < len(items.items) <= MOST_COORDINATES else ()
+    is_short_enough = 0 < len(items.items) <= MOST_COORDINATES and len(system.coordinates) <= MOST_NAMES
+    inlines: tuple[Inline, ...] = (items, " ") if is_short_enough else ()
     held = (" (", Said("'mbsym trim' looks for inputs that hold it"), ")") if system.inputs else ()
     if equilibrium.satisfied:
         yield Phrase((*inlines, Said("satisfies the equations of motion identically")))
