@@ -320,7 +320,7 @@ class _Solver:
         if self.limits.reduction and current:
             bits = max(int(c).bit_length() for x in current for c in x.coeffs())
             if len(current) * sum(map(len, current)) * bits > self.limits.reduction:
-                raise _TooLarge(Message("an interreduction of coefficients of [[bits]] bits", bits=bits))
+                raise _TooLarge(Message("an interreduction of large polynomials"))
 
     # --- Buchberger --------------------------------------------------------------------------------------------------
 
