@@ -37,7 +37,7 @@ from mbsym.model.constraints import Relation
 from mbsym.model.inputs import Input
 from mbsym.model.loads import CoordinateDamper, CoordinateSpring, ForceFunction, GeneralizedForce, Load, Rayleigh
 from mbsym.model.speeds import OMEGA, UnitVector
-from mbsym.model.system import Body, MotionEntry, Parameter, System, Vector
+from mbsym.model.system import Body, MotionEntry, Parameter, System, Vector, rational
 
 _EXPRESSIONS = (Number, Name, Negative, Operation, Call)
 _FOLDING = {"+": add, "-": subtract, "*": multiply}
@@ -364,14 +364,19 @@ def _told_by(system: System, name: str, value: Expression, free: Sequence[str]) 
 def with_free_rates(system: System) -> System:
     """Rates of the unperturbed motion that are numbers, not 0, as parameters of these values; itself where none is.
 
-    Steady motions at other rates are a family then, whose members differ in parameters.
+    Steady motions at other rates are a family then, whose members differ in parameters.  Parameters of rates that may
+    vanish, and do not at the values, are called nonzero.
     """
     free = {x.coordinate: x.rate for x in system.motion if not names(x.rate) and x.rate != ZERO}
-    if not free:
-        return system
     motion = (replace(x, rate=Name(_RATE + x.coordinate)) if x.coordinate in free else x for x in system.motion)
     rates = (Parameter(_RATE + name, "nonzero", rate) for name, rate in free.items())
-    return replace(system, motion=tuple(motion), parameters=(*system.parameters, *rates))
+    moving = {name for x in system.motion for name in names(x.rate)}
+    known = (
+        replace(x, sign="nonzero") if x.name in moving and x.sign == "real" and rational(x.value) else x
+        for x in system.parameters
+    )
+    freed = replace(system, motion=tuple(motion), parameters=(*known, *rates))
+    return system if freed == system else freed
 
 
 #: How names of parameters begin that are rates; none that is declared has this ending of velocities inside.
