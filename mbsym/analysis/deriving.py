@@ -245,12 +245,10 @@ def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
 
 def _kept(analysis: Analysis, balance: ConstrainedBalance) -> int | None:
     """The dimension of the steady motions by first integrals that are proved; None if these do not tell."""
-    ring = analysis.ring
-    running = [g.name for g in ring.generators if g.kind in ("prescribed", "time")]
     kept = [x.formula.polynomial for x in analysis.optional("integrals") or () if x.status is Certainty.PROVED]
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
     try:
-        return balance.steady_by([x for x in kept if not ring.dependencies(x, running)], at)
+        return balance.steady_by(kept, at)
     except Failure:
         return None
 

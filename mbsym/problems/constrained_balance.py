@@ -115,10 +115,16 @@ class ConstrainedBalance(Balance):
         Where f is the motion's vector field (of what does not drop out), dI f = 0: so of the equations f = 0 as many
         follow from the others as dI has rank.  If that is the dimension of the null space of df, steady motions near
         the given one are a manifold of this dimension (implicit functions).  None where a symmetry by which coordinates
-        drop out changes an integral, or the rank hangs on what may vanish.
+        drop out changes an integral, f knows the time, or the rank hangs on what may vanish.
         """
         ring, about, names = self.ring, self.about, self.scene.system.coordinates
-        if about is None or self._rows is None or self.energy is None:
+        if about is None or self._rows is None or self.energy is None or self._forces is None:
+            return None
+        running = [g.name for g in ring.generators if g.kind in ("prescribed", "time")]
+        acting = [self.energy.kinetic_energy.polynomial, self.energy.force_function.polynomial, *self._forces.values()]
+        entries = [*acting, *(x for row in self._rows for x in _entries(row))]
+        integrals = [x for x in integrals if not ring.dependencies(x, running)]
+        if any(ring.dependencies(x, running) for x in entries):  # f knows the time
             return None
         if not all(self._absent_everywhere(name, integrals) or self._symmetric(name, integrals) for name in about.idle):
             return None
