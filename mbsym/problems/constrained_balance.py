@@ -150,11 +150,12 @@ class ConstrainedBalance(Balance):
         """Whether rational numbers W_ij and S_rk exist with which, i and j being absent coordinates,
 
             dT/d(name) + sum W_ij q'_j dT/dq'_i = 0,    dg_r/d(name) + sum W_ij q'_j dg_r/dq'_i = sum S_rk g_k,
+            dQ_k/d(name) + sum W_ij q'_j dQ_k/dq'_i + sum W_ik Q_i = 0            for the forces without a potential,
 
-        where neither the force function nor any other force knows the name or these i, nor f the name.  The shift is
-        then a symmetry.  If it leaves the independent speeds as they are (the i are dependent), no equation of theirs
-        depends on the name; else it does, and the name has to rest if what is shifted is to be steady.  It leaves
-        the ``further`` functions as they are, too, as it does T.
+        where neither the force function nor f knows the name or these i.  The shift is then a symmetry.  If it leaves
+        the independent speeds as they are (the i are dependent), no equation of theirs depends on the name; else it
+        does, and the name has to rest if what is shifted is to be steady.  It leaves the ``further`` functions as they
+        are, too, as it does T.
         """
         return self._maps(name, True, further) or (name in self._resting and self._maps(name, False, further))
 
@@ -172,21 +173,22 @@ class ConstrainedBalance(Balance):
         assert rows is not None
         turned = [x for x in about.idle + about.dependent_speeds if x != name and self._absent_everywhere(x)]
         turned = [x for x in dict.fromkeys(turned) if x in about.dependent_speeds or not dependent]
-        forces = [energies.force_function.polynomial, *(self._forces or {}).values()]
-        forces += [row.position for row in rows if row.position is not None]
-        moved = [self._forces[x] for x in turned] if self._forces else []
-        if self._forces is None or any(not x.is_zero() for x in moved):
+        forces = self._forces
+        potentials = [energies.force_function.polynomial, *(row.position for row in rows if row.position is not None)]
+        if forces is None or any(ring.depends_on(x, name) for x in potentials):
+            return False
+        if any(not ring.velocity_derivative(x, y).is_zero() for x in potentials for y in turned):
             return False
         speeds = [ring.generator("velocity", x) for x in turned]
-        if any(ring.depends_on(x, name) for x in forces):
-            return False
-        if any(not ring.velocity_derivative(x, y).is_zero() for x in forces for y in turned):
-            return False
         functions = [energies.kinetic_energy.polynomial, *(row.velocity for row in rows), *further]
         equations = []
-        for number, f in enumerate(functions):
+        for number, f in enumerate((*functions, *forces.values())):
             slopes = [ring.velocity_derivative(f, x) for x in turned]
             maps = [ring.times(speed, slope) for slope in slopes for speed in speeds]
+            if number >= len(functions):
+                felt = list(forces)[number - len(functions)]
+                along = (forces[i] if j == felt else ring.zero for i in turned for j in turned)
+                maps = [x + y for x, y in zip(maps, along, strict=True)]
             combined = [
                 (g if number == r + 1 else ring.zero) for r in range(len(rows)) for g in (row.velocity for row in rows)
             ]

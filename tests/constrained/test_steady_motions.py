@@ -196,8 +196,7 @@ def test_a_speed_that_forces_determine_makes_no_family() -> None:
     assert all(part.theory.zero_power == 1 for part in found.stability.subsystems)  # of x and of the heading
     numerical = found.stability.numerical
     assert numerical is not None
-    assert not numerical.because(Because.MORE_ZERO_ROOTS)
-    assert numerical.because(Because.NOT_CLOSED)  # a force that turns with the heading is not seen through
+    assert numerical.word is Word.ASYMPTOTIC_BUT_STEADY  # the force turns with the heading
 
 
 @pytest.mark.parametrize(("p", "word"), [("1", Word.STABLE), ("0", Word.UNDECIDED)])
@@ -277,3 +276,30 @@ def test_circles_near_a_straight_course_are_found_by_what_is_conserved(speed: st
     assert (found.verdict.word, found.numerical.word) == (Word.DEPENDS if "real" in speed else word, word)
     if word is Word.UNDECIDED:
         assert found.numerical.because(Because.MORE_ZERO_ROOTS)
+
+
+DRIVEN = """
+mbsym: 1
+name: two wheels, driven and held back
+parameters: {m: positive, J: positive, a: positive, c: positive, e: positive, F: positive, k: positive}
+bodies:
+  - {name: robot, attached to: 0, connection point: [x, y, 0], rotation: {axes: [3], angles: [th]}, mass: m,
+     mass centre: [a, 0, 0], inertia about: mass centre, inertia: [J, J, J], coordinates: [x, y, th]}
+loads: [{generalised force: {x: F*cos(th) - c*x_dot, y: ACROSS, th: -e*th_dot}}]
+constraints: [{velocity: y_dot*cos(th) - x_dot*sin(th) = 0}]
+motion: {x: {rate: F/c}, y: 0, th: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("across", "word"),
+    [
+        # Thrust and drag turn with the robot: m v' = F - c v + m a w^2, (J + m a^2) w' = -(e + m a v) w.
+        ("F*sin(th) - c*y_dot", Word.ASYMPTOTIC_BUT_STEADY),
+        # These do not, and act in the second order: m v' = F + k sin(th)^2 - c v, F - c v - k v sin(th)^2 ...
+        ("(F + k)*sin(th) - c*y_dot", Word.UNDECIDED),
+        ("F*sin(th) - (c + k)*y_dot", Word.UNDECIDED),
+    ],
+)
+def test_a_course_may_be_turned_where_the_forces_turn_with_it(across: str, word: Word) -> None:
+    assert analysed(DRIVEN.replace("ACROSS", across)).stability.verdict.word is word
