@@ -18,6 +18,7 @@ from mbsym.algebra.point import Rationals
 from mbsym.analysis.approximation import kept_by_velocities, refuse_unsolved
 from mbsym.analysis.poles import pole
 from mbsym.expressions.message import Message
+from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import ZERO, names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
@@ -309,7 +310,8 @@ def _first_term(
 def _of_two_sides(analysis: Analysis, values: Mapping[str, Any] | None) -> Verdict | None:
     """Of one coordinate x at rest at 0, of which forces know |x| or sign(x): by the first term of V on either side.
 
-    V rises where it is c x^n with c > 0 for x > 0, or c (-1)^n > 0 for x < 0.
+    V rises where it is c x^n with c > 0 for x > 0, or c (-1)^n > 0 for x < 0.  It does not know x': where forces know
+    |x'| or sign(x') it is that for x' > 0; what these do to the energy is told of all velocities.
     """
     system = analysis.system
     if len(system.coordinates) != 1 or system.constraints or any(entry.value != ZERO for entry in system.motion):
@@ -317,10 +319,12 @@ def _of_two_sides(analysis: Analysis, values: Mapping[str, Any] | None) -> Verdi
     (name,) = system.coordinates
     terms, rises = [], []
     for side in (1, -1):
-        there = type(analysis)(on_one_side(system, name, side), (), analysis.terms, suggests=False)
+        beside = on_one_side(system, name, side)
+        ahead = on_one_side(beside, velocity_name(name), 1)
+        whole, there = (type(analysis)(x, (), analysis.terms, suggests=False) for x in (beside, ahead))
         scene = there.parameters_scene
         sign = knowledge.signs(scene).sign if values is None else _sign_at(scene.ring, values)
-        balance = there.balance if values is None else there.balance.at(values)
+        balance = whole.balance if values is None else whole.balance.at(values)
         term = None if scene.ring.kinked else next(first_terms(there, balance, sign), None)
         word = "unknown" if term is None else sign(term.coefficient)
         if term is None or word not in ("positive", "negative"):

@@ -144,6 +144,14 @@ values: {m: 1, k: 1, c: 1}
         ("k*x**2/2", "generalized force: {x: -c*abs(x_dot)*x_dot}", Word.ASYMPTOTIC),
         ("k*x**2/2", "rayleigh: c*abs(x_dot)**3/3", Word.ASYMPTOTIC),
         ("k*x**2/2", "rayleigh: -c*abs(x_dot)**3/3", None),
+        # Of one coordinate by the first term of V, which does not know x' (Barbashin, Krasovskii).
+        ("k*x**4", "rayleigh: c*abs(x_dot)**3/3", Word.ASYMPTOTIC),
+        ("k*x**4", "rayleigh: -c*abs(x_dot)**3/3", Word.UNSTABLE),
+        ("k*x**4", "generalized force: {x: -c*abs(x_dot)*x_dot*x**2}", Word.ASYMPTOTIC),
+        ("k*x**4", "generalized force: {x: -c*abs(x_dot)*x_dot*x}", Word.UNDECIDED),
+        ("k*abs(x)**3", "rayleigh: c*abs(x_dot)**3/3", Word.ASYMPTOTIC),
+        ("-k*x**4", "rayleigh: c*abs(x_dot)**3/3", Word.UNSTABLE),
+        ("k*x**3", "rayleigh: c*abs(x_dot)**3/3", Word.UNSTABLE),
     ],
 )
 def test_what_vanishes_with_the_argument_of_a_sign_does_not_jump(
