@@ -28,6 +28,7 @@ _MOMENTA = {
     "linear momentum": times(FORCE, TIME),
     "angular momentum": times(ENERGY, TIME),
     "angular momentum about an axis of symmetry": times(ENERGY, TIME),
+    "angular momentum about a contact": times(ENERGY, TIME),
 }
 
 

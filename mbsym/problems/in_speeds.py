@@ -26,11 +26,19 @@ from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.model.constraints import Rolling
 from mbsym.model.speeds import Quaternion
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Embedded, Equations
-from mbsym.problems.integrals import ENERGY, Integral, momentum_title, whole_momenta
+from mbsym.problems.integrals import (
+    ABOUT_CONTACT,
+    ENERGY,
+    Integral,
+    about_contact,
+    momentum_title,
+    whole_momenta,
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,6 +140,7 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
 # * the momenta  sum_r dT/du_r du_r/dq'_i  of the coordinates that are left;
 # * the components of the linear and angular momentum in inertial axes; with the unit vector gamma along one of them the
 #   area integral  (A p + h_1) gamma_1 + (B q + h_2) gamma_2 + (C r + h_3) gamma_3;
+# * the components of the angular momentum about the contact of what rolls (a ball on a turntable keeps them);
 # * dT/du_r of the declared speeds (C r of a symmetric top);
 # * the squares and products of the unit vectors that occur, the norms of quaternions: what these are is known, they are
 #   listed because the equations alone keep them.
@@ -169,8 +178,16 @@ def candidates(
         title = Message("momentum along the displacement of [[name]] that the constraints allow", name=name)
         yield _integral(form, title, "cyclic momentum", name, ring.dot(momenta, along)), along
     with suppress(Failure):
-        for kind, axis, formula in whole_momenta(scene):
+        momenta_of_all = whole_momenta(scene)
+        for kind, axis, formula in momenta_of_all:
             yield _integral(form, momentum_title(kind, axis), kind, str(axis), formula), ()
+        for rolling in (x for x in form.system.constraints if isinstance(x, Rolling)):
+            place = f"{rolling.body} {rolling.on}"
+            for axis, formula in about_contact(scene, rolling, momenta_of_all):
+                title = Message(
+                    "angular momentum about the contact of [[body]], axis [[axis]]", body=rolling.body, axis=axis
+                )
+                yield _integral(form, title, ABOUT_CONTACT, f"{place} {axis}", formula), ()
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()

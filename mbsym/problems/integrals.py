@@ -60,6 +60,7 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import are_met, ball_states, rational_states
 from mbsym.mechanics.variables import expressions
+from mbsym.model.constraints import Rolling
 from mbsym.model.system import INERTIAL, System, acceleration_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations, convective_rate, separate
@@ -79,6 +80,9 @@ GYROSCOPIC, WITH_IMPULSE = "gyroscopic momentum", "momentum with the impulse of 
 
 #: C omega + h along an axis of symmetry of a body.
 AXIAL = "angular momentum about an axis of symmetry"
+
+#: H_P = H - r_P x P about the place P where a body rolls on another.
+ABOUT_CONTACT = "angular momentum about a contact"
 
 #: Working precision of balls, in bits.
 PRECISION = 256
@@ -455,6 +459,18 @@ def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
         momenta.append(("angular momentum", axis, algebra.reduce(angular)))
     order = {"linear momentum": 0, "angular momentum": 1}
     return sorted(momenta, key=lambda item: order[item[0]])
+
+
+def about_contact(scene: Scene, rolling: Rolling, whole: Sequence[tuple[str, int, Any]]) -> Iterator[tuple[int, Any]]:
+    """(axis, component) of H - r x P along the inertial axes, r the contact; ``whole``: those of P and of H."""
+    algebra, known = scene.algebra, {(kind, axis): x for kind, axis, x in whole}
+    place = scene.position(scene.zero(rolling.body), INERTIAL)
+    arm = place + scene.to_axes(scene.vector(rolling.contact, rolling.axes), INERTIAL)
+    for axis, second, third in ((3, 1, 2), (1, 2, 3), (2, 3, 1)):
+        carried = [
+            algebra.times(arm[i - 1], known["linear momentum", j]) for i, j in ((second, third), (third, second))
+        ]
+        yield axis, algebra.reduce(known["angular momentum", axis] - carried[0] + carried[1])
 
 
 def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bool:

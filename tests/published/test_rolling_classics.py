@@ -93,6 +93,33 @@ def test_other_independent_velocities_have_the_same_roots() -> None:
     assert {check.outcome for check in found.checks} <= {EXACT, NUMERICAL}
 
 
+def test_the_moment_about_the_contact_is_kept_on_the_turntable() -> None:
+    """m r k x V + J omega: all forces act there, and the contact moves as the centre does; the energy is not kept.
+
+    With them V - 2/7 Omega k x R = const for a homogeneous sphere: circles, and a family of steady motions.
+    """
+    found = shipped("turntable-sphere")
+    source = random.Random(5)
+    n = {name: source.uniform(0.5, 1) for name in found.ring.names()}
+    sines = {f"{f}_{x}": getattr(np, f)(n[x]) for x in ("alpha", "beta", "gamma") for f in ("sin", "cos")}
+    a, b, c = (n[f"{x}_dot"] for x in ("alpha", "beta", "gamma"))
+    spin = [
+        a + c * sines["sin_beta"],
+        b * sines["cos_alpha"] - c * sines["sin_alpha"] * sines["cos_beta"],
+        b * sines["sin_alpha"] + c * sines["cos_alpha"] * sines["cos_beta"],
+    ]
+    carried = [-n["m"] * n["r"] * n["y_dot"], n["m"] * n["r"] * n["x_dot"], 0]
+    wanted = [n["J"] * w + x for w, x in zip(spin, carried, strict=True)]
+    balls = {name: arb(value) for name, value in n.items()}
+    kept = [float(found.ring.evaluate(x.formula.polynomial, balls).mid()) for x in found.integrals]
+    assert sorted(kept) == pytest.approx(sorted(wanted))
+    assert {str(x.status) for x in found.integrals} == {"proved"}
+    numerical = found.stability.numerical
+    assert numerical is not None
+    assert numerical.word is Word.CRITICAL
+    assert not numerical.because(Because.MORE_ZERO_ROOTS)
+
+
 def test_the_table_turned_the_other_way_is_seen() -> None:
     """A planted sign: the constraint with -Omega is another system."""
     found = changed("turntable-sphere", ("chi: {rate: Omega}", "chi: {rate: -Omega}"))

@@ -163,19 +163,15 @@ class AlongMotion:
     # --- at states on the constraints ---
 
     @cached_property
-    def states(self) -> list[OnManifold]:
-        """Exact states on the constraints, or enclosures of some."""
-        assert self.programs is not None
-        with ctx.workprec(PRECISION):
-            return list(Manifold(self.form.system.without_speeds, self.ring, self.programs).states(STATES))
-
-    @cached_property
     def _carried(self) -> list[tuple[OnManifold, Carrier, Carrier]]:
-        """Those of the states where the equations have a solution, with their accelerations, and as series in time."""
-        carried = []
+        """Exact states on the constraints, or enclosures of some, with their accelerations, and as series in time.
+
+        States where the equations have no solution are not counted.
+        """
+        carried: list[tuple[OnManifold, Carrier, Carrier]] = []
         assert self.programs is not None
         with ctx.workprec(PRECISION):
-            for on_manifold in self.states:
+            for on_manifold in Manifold(self.form.system.without_speeds, self.ring, self.programs).states(2 * STATES):
                 with suppress(*NOT_THERE):
                     state = moving(self.form, on_manifold, self.tied, self.programs)
                     carried.append(
@@ -185,6 +181,8 @@ class AlongMotion:
                             in_time(self.ring, Oracle(self.form.system, state)),
                         )
                     )
+                if len(carried) == STATES:
+                    break
         return carried
 
     def values(self, x: Polynomial, rate: bool = False) -> list[tuple[OnManifold, Any]]:

@@ -30,6 +30,7 @@ from mbsym.mechanics.programs import (
 )
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.problems.integrals import (
+    ABOUT_CONTACT,
     AXIAL,
     ENERGY,
     GYROSCOPIC,
@@ -220,7 +221,7 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
                 carry = Carrier(analysis.ring, code.program, dict(code.environment))
                 lagrangian[key] = carry(item.formula.polynomial)
     for item, key in zip(integrals, keys, strict=True):
-        if item.kind in (AXIAL, WITH_FORCES, OF_A_PART, GYROSCOPIC, WITH_IMPULSE):
+        if item.kind in (ABOUT_CONTACT, AXIAL, WITH_FORCES, OF_A_PART, GYROSCOPIC, WITH_IMPULSE):
             carry = Carrier(analysis.ring, code.program, dict(code.environment))
             lagrangian[key] = carry(item.formula.polynomial)
     if all(key in lagrangian for key in keys):

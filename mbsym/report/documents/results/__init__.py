@@ -274,6 +274,7 @@ class Integral(Part, frozen=True):
             "linear momentum",
             "angular momentum",
             "angular momentum about an axis of symmetry",
+            "angular momentum about a contact",
             "speed momentum",
             "unit vectors",
             "quaternion",
