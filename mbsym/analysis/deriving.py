@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import NOT_THERE, Failure, SingularPoint
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.matrices import determinant
 from mbsym.analysis import approximation, constrained, given, higher
 from mbsym.analysis.judge import Judge
@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.model.system import System
     from mbsym.problems.constrained_balance import ConstrainedBalance
-    from mbsym.problems.constraints.motion import Embedded
+    from mbsym.problems.constraints.motion import Embedded, Turned
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.in_speeds import SpeedEquations
-    from mbsym.problems.linearisation import Subsystem
+    from mbsym.problems.linearisation import Reduction, Subsystem
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation.result import Stabilisation
     from mbsym.problems.state_space import StateSpace
@@ -210,46 +210,52 @@ def balance_of(analysis: Analysis) -> Balance:
         redundant = () if tied is None or tied.in_speeds else tied.redundant
         proved = frozenset(row.name for row in redundant if row.certainty is Certainty.PROVED)
         about = analysis.reduced.about
-        of_steady = _of_the_steady_motions(analysis)
-        balance = ConstrainedBalance(
-            analysis.scene, energies, analysis.signs, {}, about=about, following=proved, **of_steady
-        )
-        return balance if of_steady.get("steady", 0) is not None else replace(balance, steady=_kept(analysis, balance))
+        balance = ConstrainedBalance(analysis.scene, energies, analysis.signs, {}, about=about, following=proved)
+        return balance if about.holonomic or about.leaf else _with_steady_motions(analysis, balance)
     return dissipation.balance(
         analysis.parameters_scene if energies is None else analysis.held_scene, energies, analysis.signs
     )
 
 
-def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
-    """Of a nonholonomic system: the position that velocities follow, and the dimension of the steady motions."""
-    about = analysis.reduced.about
-    if about.holonomic or about.leaf:
-        return {}
-    if about.following:
-        return {"steady": None}
-    from mbsym.problems.constraints.motion import oscillating_position, steady_motions
+def _with_steady_motions(analysis: Analysis, balance: ConstrainedBalance) -> ConstrainedBalance:
+    """Of a nonholonomic system: with the position that velocities follow, and the dimension of the steady motions.
 
+    The dimension is found by the equations, or by first integrals that are proved.
+    """
+    from mbsym.problems.constraints.motion import oscillating_position
+
+    about = analysis.reduced.about
     derived = analysis.optional("equations")
-    embedded = None if derived is None else derived.embedded
-    if embedded is None:
-        return {"steady": None}
+    ring, embedded = analysis.ring, None if derived is None else derived.embedded
+    at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
+    if embedded is not None and not about.following:
+        position = oscillating_position(ring, embedded, analysis.system.coordinates)
+        position = position or _in_other_velocities(analysis, embedded)
+        if position and ring.reduce(at[ring.index("velocity", position)]).is_zero():
+            balance = replace(balance, oscillating=position)
+    steady = _steady_motions(analysis, about, None)
+    if steady is None and balance.turned is not None:
+        steady = _steady_motions(analysis, about, balance.turned)
+    if steady is None:
+        kept = [x.formula.polynomial for x in analysis.optional("integrals") or () if x.status is Certainty.PROVED]
+        with suppress(Failure):
+            steady = balance.steady_by(kept, at)
+    return replace(balance, steady=steady)
+
+
+def _steady_motions(analysis: Analysis, about: Reduction, turned: Turned | None) -> int | None:
+    """The dimension of the steady motions by the equations without multipliers of this analysis."""
+    from mbsym.problems.constraints.motion import dependent_velocities, steady_motions
+
+    equations = analysis.optional("equations")
+    if equations is None or equations.embedded is None or equations.constraints.solved is None:
+        return None
     ring, names = analysis.ring, analysis.system.coordinates
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
-    position = oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded)
-    rests = bool(position) and ring.reduce(at[ring.index("velocity", position)]).is_zero()
-    steady = None
-    with suppress(SingularPoint):  # independent velocities may be singular on the motion
-        steady = steady_motions(ring, embedded, names, about.idle, at, analysis.signs)
-    return {"oscillating": position if rests else "", "steady": steady}
-
-
-def _kept(analysis: Analysis, balance: ConstrainedBalance) -> int | None:
-    """The dimension of the steady motions by first integrals that are proved; None if these do not tell."""
-    kept = [x.formula.polynomial for x in analysis.optional("integrals") or () if x.status is Certainty.PROVED]
-    at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
+    images = dependent_velocities(analysis.form, equations.constraints.solved)
     try:
-        return balance.steady_by(kept, at)
-    except Failure:
+        return steady_motions(ring, equations.embedded, names, about.idle, at, analysis.signs, images, turned)
+    except Failure:  # independent velocities may be singular on the motion
         return None
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from flint import fmpq_mat
+from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
@@ -23,6 +23,7 @@ from mbsym.expressions.rates import velocity_name
 from mbsym.mechanics.constraints.rows import Row, RowName, said_rows
 from mbsym.mechanics.expansion import echelon
 from mbsym.mechanics.motion import turning
+from mbsym.problems.constraints.motion import Turned
 from mbsym.problems.displacements import Direction, Displacements, among
 from mbsym.problems.dissipation import Balance, EnergyLaw
 from mbsym.problems.linearisation import Reduction
@@ -157,7 +158,20 @@ class ConstrainedBalance(Balance):
         does, and the name has to rest if what is shifted is to be steady.  It leaves the ``further`` functions as they
         are, too, as it does T.
         """
-        return self._maps(name, True, further) or (name in self._resting and self._maps(name, False, further))
+        return self._map(name, further) is not None
+
+    def _map(self, name: str, further: Sequence[Polynomial] = ()) -> Mapping[tuple[str, str], Any] | None:
+        """The W of ``_symmetric``, entries that are not 0."""
+        found = self._maps(name, True, further)
+        return self._maps(name, False, further) if found is None and name in self._resting else found
+
+    @property
+    def turned(self) -> Turned | None:
+        """The one coordinate that drops out and is not absent (a heading), and the W of its shift; None if not one."""
+        about = self.about
+        names = [] if about is None or not self.closed else [x for x in about.idle if not self._absent_everywhere(x)]
+        found = self._map(names[0]) if len(names) == 1 else None
+        return None if found is None else (names[0], found)
 
     @cached_property
     def _resting(self) -> set[str]:
@@ -165,7 +179,7 @@ class ConstrainedBalance(Balance):
         moving = {name for name, _ in self.about.rates} if self.about is not None else set()
         return {name for name in self.scene.system.coordinates if name not in moving} - set(turning(self.scene))
 
-    def _maps(self, name: str, dependent: bool, further: Sequence[Polynomial]) -> bool:
+    def _maps(self, name: str, dependent: bool, further: Sequence[Polynomial]) -> Mapping[tuple[str, str], Any] | None:
         """The symmetry of ``_symmetric`` with all i and j ``dependent``, or any."""
         ring, about, energies, rows = self.ring, self.about, self.energy, self._rows
         assert about is not None
@@ -176,9 +190,9 @@ class ConstrainedBalance(Balance):
         forces = self._forces
         potentials = [energies.force_function.polynomial, *(row.position for row in rows if row.position is not None)]
         if forces is None or any(ring.depends_on(x, name) for x in potentials):
-            return False
+            return None
         if any(not ring.velocity_derivative(x, y).is_zero() for x in potentials for y in turned):
-            return False
+            return None
         speeds = [ring.generator("velocity", x) for x in turned]
         functions = [energies.kinetic_energy.polynomial, *(row.velocity for row in rows), *further]
         equations = []
@@ -193,7 +207,9 @@ class ConstrainedBalance(Balance):
                 (g if number == r + 1 else ring.zero) for r in range(len(rows)) for g in (row.velocity for row in rows)
             ]
             equations.append((ring.derivative(f, name), [*maps, *combined]))
-        return _solvable(equations)
+        solution = _solution(equations)
+        pairs = [(i, j) for i in turned for j in turned]
+        return None if solution is None else {pair: x for pair, x in zip(pairs, solution, strict=False) if x}
 
     @property
     def _velocity_rows(self) -> tuple[Polynomial, ...]:
@@ -282,18 +298,23 @@ def _entries(row: Row) -> list[Polynomial]:
     return [row.velocity, *row.partials, *([] if row.position is None else [row.position])]
 
 
-def _solvable(equations: Sequence[tuple[Polynomial, Sequence[Polynomial]]]) -> bool:
-    """Whether rational numbers c_k exist with  p + sum c_k p_k = 0  in every equation (p, (p_1, p_2, ...))."""
+def _solution(equations: Sequence[tuple[Polynomial, Sequence[Polynomial]]]) -> list[Any] | None:
+    """Rational numbers c_k with  p + sum c_k p_k = 0  in every equation (p, (p_1, p_2, ...)); None without any."""
     lines: list[list[Any]] = []
     for value, unknowns in equations:
         columns = [x.to_dict() for x in (*unknowns, value)]
         monomials = sorted({monomial for column in columns for monomial in column})
         lines += [[column.get(monomial, 0) for column in columns] for monomial in monomials]
         if len(lines) * len(columns) > MOST_ENTRIES:
-            return False
+            return None
+    width = len(equations[0][1])
+    found = [fmpq(0)] * width
     if not lines:
-        return True
-    width = len(lines[0])
-    whole = fmpq_mat(len(lines), width, [x for line in lines for x in line])
-    known = fmpq_mat(len(lines), width - 1, [x for line in lines for x in line[:-1]])
-    return bool(whole.rank() == known.rank())
+        return found
+    reduced, rank = fmpq_mat(len(lines), width + 1, [x for line in lines for x in line]).rref()
+    for row in range(rank):
+        pivot = next(k for k in range(width + 1) if reduced[row, k])
+        if pivot == width:
+            return None
+        found[pivot] = -reduced[row, width]
+    return found

@@ -270,7 +270,7 @@ motion: {x: {rate: V}, y: 0, th: 0, de: 0, ps: 0}
         ("{value: 1, sign: positive}", "-de**3", Word.UNDECIDED),
     ],
 )
-def test_circles_near_a_straight_course_are_found_by_what_is_conserved(speed: str, force: str, word: Word) -> None:
+def test_circles_near_a_straight_course_are_found(speed: str, force: str, word: Word) -> None:
     found = analysed(TRICYCLE.replace("SPEED", speed).replace("FORCE", force)).stability
     assert found.numerical is not None
     assert (found.verdict.word, found.numerical.word) == (Word.DEPENDS if "real" in speed else word, word)
@@ -303,3 +303,37 @@ motion: {x: {rate: F/c}, y: 0, th: 0}
 )
 def test_a_course_may_be_turned_where_the_forces_turn_with_it(across: str, word: Word) -> None:
     assert analysed(DRIVEN.replace("ACROSS", across)).stability.verdict.word is word
+
+
+RACER = """
+mbsym: 1
+name: roller racer
+parameters: {a: positive, b: positive, m: positive, J: positive, I: positive, V: positive}
+bodies:
+  - {name: rear, attached to: 0, connection point: [x, y, 0], rotation: {axes: [3], angles: [th]}, mass: m,
+     inertia about: mass centre, inertia: [J, J, J], coordinates: [x, y, th]}
+  - {name: front, attached to: rear, connection point: [a, 0, 0], rotation: {axes: [3], angles: [ph]}, mass: 0,
+     inertia about: joint, inertia: [I, I, I]}
+loads: [{generalised force: {ph: FORCE}}]
+constraints:
+  - velocity: y_dot*cos(th) - x_dot*sin(th) = 0
+  - velocity: y_dot*cos(th + ph) - x_dot*sin(th + ph) + (a*cos(ph) + b)*th_dot + b*ph_dot = 0
+motion: {x: {rate: V}, y: 0, th: 0, ph: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        # On every circle the hinge rests and nothing but the rear axle is accelerated: a family of two dimensions.
+        # About a straight course the roots are 0 (twice) and  -a V (a I - b J)/((a + b)^2 J + a^2 I) up to the sign.
+        ("0", [Word.ASYMPTOTIC_BUT_STEADY, Word.UNSTABLE]),
+        # A hinge that a force of the second order moves rests on no circle but at ph = 0.
+        ("ph**2", [Word.UNDECIDED, Word.UNSTABLE]),
+    ],
+)
+def test_circles_of_a_roller_racer_are_steady(force: str, words: list[Word]) -> None:
+    found = analysed(RACER.replace("FORCE", force)).stability
+    (hinge,) = [part for part in found.subsystems if "ph" in part.coordinates]
+    assert [case.verdict.word for case in hinge.theory.cases] == words
+    assert {str(x) for _, x, _ in hinge.conditions} <= {"a*I - b*J", "b*J - a*I"}

@@ -13,8 +13,9 @@ so that it is kept if J mu vanishes on the constraints, for every independent ro
   xi are found, from linear equations;
 * squares and products of unit vectors and quaternions, mu = 0.
 
-The same, components of the linear and angular momentum in inertial axes, also about contacts, and momenta dT/du are tried
-at exact states on the constraints, and proved, where the equations without multipliers are short enough, by
+The same, components of the linear and angular momentum in inertial axes, also about contacts, and momenta dT/du of
+declared speeds are tried at exact states on the constraints, and proved, where the equations without multipliers are
+short enough, by
 det(Y^T M Y) dI/dt = 0  in the ring.
 
 What else a nonholonomic system keeps (the Noether theorem gives momentum equations, not integrals) is not looked for.

@@ -13,6 +13,7 @@ Sources: G. A. Maggi, Principii di stereodinamica (1901); Neimark & Fufaev, chap
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
+from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
@@ -24,6 +25,9 @@ from mbsym.mechanics.expansion import echelon
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.equations import Embedded, Equations
+
+#: A coordinate h, and the W with which its shift, and q' -> q' + W q', is a symmetry: entries that are not 0.
+Turned = tuple[str, Mapping[tuple[str, str], Any]]
 
 
 def embedded_equations(form: SpeedForm, equations: Equations, constraints: Constraints) -> Embedded:
@@ -69,20 +73,51 @@ def steady_motions(
     idle: Sequence[str],
     at: Mapping[int, Polynomial],
     signs: Signs,
+    images: Mapping[int, Polynomial],
+    turned: Turned | None = None,
 ) -> int | None:
     """The dimension of the manifold of steady motions near one, ``idle`` coordinates not counted; None if not shown.
 
-    Steady are positions q that rest and velocities w with f(q, 0, w) = 0.  Rows that vanish, or vanish where others do
-    that are linear in a velocity, say nothing; there is a manifold where the rows that are left are as many as their
-    rank ``at`` the motion (implicit functions), by pivots that are shown not to vanish.
+    Steady are positions q that rest and velocities w with f(q, 0, w) = 0; of positions whose velocities are dependent
+    (``images`` by independent ones) these have to vanish.  A heading h is not counted whose shift is a symmetry with a
+    linear map W of velocities (``turned``): motions are steady, too, that are turned at a constant rate, w' = h' W q',
+
+        f(q, 0, w) - M h' W q' = 0            at one h.
+
+    Rows that vanish, or vanish where others do that are linear in a velocity, say nothing; there is a manifold where
+    the rows that are left are as many as their rank ``at`` the motion (implicit functions), by pivots that are shown
+    not to vanish.
     """
-    felt = felt_coordinates(ring, embedded, coordinates)
+    heading, turns = turned or ("", {})
+    felt = _felt(ring, embedded, coordinates)
     if felt is None:
         return None
-    resting = {ring.index("velocity", name): ring.zero for name in felt}
+    felt = tuple(name for name in felt if name != heading)
+    following = [name for name in felt if name not in embedded.free]
+    resting = {ring.index("velocity", name): ring.zero for name in felt if name in embedded.free}
     if any(not ring.reduce(at[index]).is_zero() for index in resting):
         return None
-    rows = [ring.reduce(ring.substitute(x.polynomial, resting)) for x in embedded.forcing]
+    slice_ = {k: x for k, x in at.items() if heading and ring.depends_on(ring.context.gen(k), heading)}
+
+    def there(x: Polynomial) -> Polynomial:
+        return ring.reduce(ring.substitute(ring.substitute(ring.substitute(x, dict(images)), resting), slice_))
+
+    def velocity(name: str) -> Polynomial:
+        return there(ring.generator("velocity", name))
+
+    turning = [
+        ring.reduce(velocity(heading) * sum((velocity(j) * x for (i, j), x in turns.items() if i == name), ring.zero))
+        if heading
+        else ring.zero
+        for name in embedded.free
+    ]
+    rows = [
+        ring.reduce(there(x.polynomial) - ring.dot([there(y) for y in row], turning))
+        for x, row in zip(embedded.forcing, embedded.mass_matrix.polynomials, strict=True)
+    ]
+    rows += map(velocity, following)
+    if any(ring.dependencies(x, [name for name in coordinates if name not in felt]) for x in rows):
+        return None
     gliding = [name for name in embedded.free if name not in felt]
     variables = (*felt, *map(velocity_name, gliding))
     dimension = len(gliding) + len({*felt} - {*idle})
@@ -131,7 +166,13 @@ def felt_coordinates(ring: Ring, embedded: Embedded, coordinates: Sequence[str])
     """The coordinates that the equations depend on.
 
     None where these are not analytic, or know other velocities or the time: sin(chi) of a prescribed angle is a sine.
+    None, too, where the velocity of one is dependent.
     """
+    felt = _felt(ring, embedded, coordinates)
+    return felt if felt is not None and {*felt} <= {*embedded.free} else None
+
+
+def _felt(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> tuple[str, ...] | None:
     entries = [*(x for row in embedded.mass_matrix.polynomials for x in row), *(x.polynomial for x in embedded.forcing)]
     held = [ring.generators[k] for k in ring.held(entries)]
     if any(g.kinked or (g.kind == "velocity" and g.name not in embedded.free) for g in held):
@@ -139,8 +180,7 @@ def felt_coordinates(ring: Ring, embedded: Embedded, coordinates: Sequence[str])
     running = [g.name for g in ring.generators if g.kind in ("prescribed", "time")]
     if any(ring.dependencies(x, running) for x in entries):
         return None
-    felt = tuple(name for name in coordinates if any(ring.depends_on(x, name) for x in entries))
-    return felt if {*felt} <= {*embedded.free} else None
+    return tuple(name for name in coordinates if any(ring.depends_on(x, name) for x in entries))
 
 
 def _is_linear(ring: Ring, p: Polynomial, name: str) -> bool:
