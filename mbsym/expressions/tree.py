@@ -245,9 +245,8 @@ def add(left: Expression, right: Expression) -> Expression:
         return right
     if is_number(right, 0):
         return left
-    if isinstance(right, Negative):
-        return subtract(left, right.operand)
-    return Operation("+", left, right)
+    opposite = _without_minus(right)
+    return Operation("+", left, right) if opposite is None else subtract(left, opposite)
 
 
 def subtract(left: Expression, right: Expression) -> Expression:
@@ -255,7 +254,18 @@ def subtract(left: Expression, right: Expression) -> Expression:
         return left
     if is_number(left, 0):
         return negative(right)
-    return Operation("-", left, right)
+    opposite = _without_minus(right)
+    return Operation("-", left, right) if opposite is None else add(left, opposite)
+
+
+def _without_minus(expression: Expression) -> Expression | None:
+    """-x of an x that begins with a minus, as -6*a does; None of any other."""
+    match expression:
+        case Negative(operand):
+            return operand
+        case Operation("*" | "/" as operator, left, right) if (opposite := _without_minus(left)) is not None:
+            return Operation(operator, opposite, right)
+    return None
 
 
 def negative(operand: Expression) -> Expression:

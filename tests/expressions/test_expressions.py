@@ -20,7 +20,9 @@ from mbsym.expressions.tree import (
     Negative,
     Number,
     Operation,
+    add,
     differentiate,
+    subtract,
     text,
 )
 
@@ -209,6 +211,31 @@ def test_a_shared_tree_is_differentiated_once() -> None:
 
     assert value(differentiate(tree, "x")) == 2**60
     assert differentiate(tree, "y") == Number(Fraction(0))
+
+
+@pytest.mark.parametrize(
+    ("right", "difference", "total"),
+    [
+        ("-6", "a + 6", "a - 6"),
+        ("-6*b", "a + 6*b", "a - 6*b"),
+        ("-b/c", "a + b/c", "a - b/c"),
+        ("-(b - c)", "a + b - c", "a - (b - c)"),
+        ("(-b)**2", "a - (-b)**2", "a + (-b)**2"),
+        ("b - 6", "a - (b - 6)", "a + b - 6"),
+    ],
+)
+def test_what_begins_with_a_minus_is_added_and_taken_away_without_it(right: str, difference: str, total: str) -> None:
+    values = {"a": Fraction(7), "b": Fraction(3), "c": Fraction(5)}
+    for made, expected in ((subtract, difference), (add, total)):
+        tree = made(Name("a"), good(right))
+        sign = -1 if made is subtract else 1
+        assert eval(text(tree), {}, values) == values["a"] + sign * eval(right, {}, values)
+        assert same_signs(text(tree)) == same_signs(expected)
+
+
+def same_signs(written: str) -> str:
+    """A text without the brackets that a writer may set or leave out."""
+    return written.replace("(", "").replace(")", "").replace(" ", "")
 
 
 @pytest.mark.parametrize(
