@@ -382,7 +382,7 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     system, scene, tied = analysis.system, analysis.parameters_scene, analysis.constraints
     expansion, about = analysis.reduced.expansion, analysis.reduced.about
     at_rest = not expansion.base.turning and all(x.is_zero() for x in expansion.base.rates)
-    if not at_rest or system.prescribed or any("t" in names(x) for x in expressions(system)):
+    if not at_rest or _knows_the_time(analysis) or any("t" in names(x) for x in expressions(system)):
         raise NotExpanded(
             "under constraints only rests are expanded, of systems whose equations do not contain the time",
             remedy="problem 6 judges steady motions in first approximation ('mbsym run'), 'mbsym orbit' finds periodic "
@@ -394,6 +394,16 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     ):
         raise NotExpanded("the constraints leave no manifold that is known")
     return lambda order: on_manifold(scene, analysis.signs, expansion, order)
+
+
+def _knows_the_time(analysis: Analysis) -> bool:
+    """Whether equations or constraints contain what is prescribed, not its constant rates alone (a turning frame)."""
+    ring, tied = analysis.ring, analysis.constraints
+    prescribed = [item.name for item in analysis.system.prescribed]
+    rows = [*(x.polynomial for x in tied.velocity), *(x for row in tied.jacobian.polynomials for x in row)]
+    energies = (analysis.energy.kinetic_energy.polynomial, analysis.energy.force_function.polynomial)
+    acting = (*energies, *generalized_forces(analysis.held_scene).values(), *rows)
+    return bool(prescribed) and any(ring.dependencies(x, prescribed) for x in acting)
 
 
 def expanded_with(analysis: Analysis) -> tuple[bool, frozenset[str], Callable[[int], OnManifold] | None]:

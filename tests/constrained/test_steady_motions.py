@@ -337,3 +337,43 @@ def test_circles_of_a_roller_racer_are_steady(force: str, words: list[Word]) -> 
     (hinge,) = [part for part in found.subsystems if "ph" in part.coordinates]
     assert [case.verdict.word for case in hinge.theory.cases] == words
     assert {str(x) for _, x, _ in hinge.conditions} <= {"a*I - b*J", "b*J - a*I"}
+
+
+HOOP = """
+mbsym: 1
+name: bead on a hoop that turns
+parameters: {m: positive, R: positive, g: positive, w: positive, b: nonnegative}
+prescribed: {phi: {rate: w}}
+bodies:
+  - {name: hoop, attached to: 0, rotation: {axes: [3], angles: [phi]}, mass: 0}
+  - {name: bead, attached to: hoop, BEAD, mass: m}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+  - generalised force: {FORCE}
+"""
+BY_ANGLE = ("connection point: [R*sin(th), 0, -R*cos(th)], coordinates: [th]", "motion: {th: 0}\n")
+BY_RELATION = (
+    "connection point: [x, 0, z], coordinates: [x, z]",
+    "constraints: [{relation: x**2 + z**2 = R**2}]\ndependent: [z]\nmotion: {x: 0, z: -R}\n",
+)
+
+
+@pytest.mark.parametrize(
+    ("of_angle", "of_place", "values", "word"),
+    [
+        # V = m R^2 (w^2 cos(th)^2/2 - g/R cos(th)): at g = R w^2 it begins with + m g R th^4/8.
+        ("th: -b*R**2*th_dot", "x: -b*x_dot, z: -b*z_dot", "g: 4, w: 2, b: 5", Word.ASYMPTOTIC),
+        ("th: -b*R**2*th_dot", "x: -b*x_dot, z: -b*z_dot", "g: 4, w: 2, b: 0", Word.STABLE),
+        ("th: -b*R**2*th_dot", "x: -b*x_dot, z: -b*z_dot", "g: 4, w: 3, b: 5", Word.UNSTABLE),
+        # A force that knows how far the hoop has turned is none of a turning frame.
+        ("th: sin(phi)*th**5", "x: sin(phi)*x**5", "g: 4, w: 2, b: 0", Word.UNDECIDED),
+    ],
+)
+def test_rest_in_a_turning_frame_is_judged_alike_by_a_relation(
+    of_angle: str, of_place: str, values: str, word: Word
+) -> None:
+    for (bead, rest), force in ((BY_ANGLE, of_angle), (BY_RELATION, of_place)):
+        text = HOOP.replace("BEAD", bead).replace("FORCE", force) + rest + f"values: {{m: 1, R: 1, {values}}}\n"
+        numerical = analysed(text).stability.numerical
+        assert numerical is not None
+        assert numerical.word is word

@@ -250,9 +250,10 @@ class Because(Code):
         "The first approximation is stable by gyroscopic forces alone, and leaves the nonlinear system open."
     )
     COINCIDENCE = "Frequencies coincide (semisimple): a border of the region of gyroscopic stabilisation may be here."
-    NO_ENERGY = "$K > 0$, but no energy integral of the nonlinear system is known."
+    NO_ENERGY = "$K > 0$, but the energy of the whole nonlinear system is not known to be kept or to fall."
     NO_ENERGY_BUT_CYCLIC = (
-        "Without the cyclic coordinates $K > 0$, but no energy integral of the nonlinear system is known."
+        "Without the cyclic coordinates $K > 0$, but the energy of the whole nonlinear system is not known to be kept "
+        "or to fall."
     )
     IMAGINARY = "No root has a positive real part, but some are imaginary."
     IMAGINARY_SIMPLE = "All roots are imaginary and simple; the forces are not potential."
