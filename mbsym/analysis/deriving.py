@@ -89,13 +89,14 @@ def in_other_angles(analysis: Analysis) -> Stability | None:
 
     The unperturbed motion is the same: stability is a property of it, not of angles.
     """
-    for other, judgement in _in_other_angles(analysis):
+    for other, there in in_steady_angles(analysis):
         axes = ", ".join(map(str, other.axes))
-        return stability.because(judgement, Because.OTHER_ANGLES, other.body, axes, ", ".join(other.angles))
+        return stability.because(there.stability, Because.OTHER_ANGLES, other.body, axes, ", ".join(other.angles))
     return None
 
 
-def _in_other_angles(analysis: Analysis) -> Iterator[tuple[Reordered, Stability]]:
+def in_steady_angles(analysis: Analysis) -> Iterator[tuple[Reordered, Analysis]]:
+    """Analyses in rotation sequences in which a body's spin is steady and regular."""
     for other in rotation_orders(analysis.system) if analysis.suggests else ():
         there = type(analysis)(other.system, (), analysis.terms, suggests=False)
         there.__dict__["ring"] = analysis.ring
@@ -105,7 +106,7 @@ def _in_other_angles(analysis: Analysis) -> Iterator[tuple[Reordered, Stability]
         except Failure:
             continue
         if not judgement.verdict.coordinates_singular:
-            yield other, judgement
+            yield other, there
 
 
 def _leading(part: Subsystem) -> list[list[Polynomial]]:
@@ -130,7 +131,7 @@ def _demand_regular(analysis: Analysis) -> None:
         "no theorem about stabilisation applies"
     )
     hint = ""
-    for other, _ in _in_other_angles(analysis):
+    for other, _ in in_steady_angles(analysis):
         axes, angles = ", ".join(map(str, other.axes)), ", ".join(other.angles)
         hint = Message(
             "with 'rotation: {axes: [[[axes]]], angles: [[[angles]]]}' of body '[[body]]' it is derived",

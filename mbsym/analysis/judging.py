@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure, message_of
+from mbsym.analysis.deriving import in_steady_angles
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.where import where_zero
 from mbsym.mechanics.variables import angle_denominators, angles_of
@@ -39,8 +40,7 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     system = analysis.system
     for number in analysis.problems:  # not under the small budget of a claim, whose failures would be remembered
         analysis.stage(number)
-    if any(claim.right is not None for claim in system.claims):
-        analysis.optional("trials")
+    judged = _in_steady_angles(analysis) if any(CLAIMS[claim.kind].inequality for claim in system.claims) else analysis
     symbols = claims.Symbols.of(analysis)
     own, there = angle_denominators(system), set(angles_of(system))
     arguments = {
@@ -61,10 +61,20 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     allowance = analysis.ring.work_budget // CLAIMS_SHARE
     results = []
     for claim in system.claims:
-        result, spent = _judged(source if id(claim) in further else analysis, claim, allowance)
+        own_source = judged if CLAIMS[claim.kind].inequality else analysis
+        result, spent = _judged(source if id(claim) in further else own_source, claim, allowance)
         allowance -= spent
         results.append(result)
     return tuple(results)
+
+
+def _in_steady_angles(analysis: Analysis) -> Analysis:
+    """The analysis that problem 6 judges: in other angles where a spin is steady in these alone."""
+    if analysis.optional("trials") is None:
+        for _, there in in_steady_angles(analysis):
+            there.optional("trials")
+            return there
+    return analysis
 
 
 def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult, int]:

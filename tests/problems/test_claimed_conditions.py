@@ -528,3 +528,28 @@ def test_what_is_stable_by_one_theorem_or_another_is_stable() -> None:
     """With friction all roots but a zero one are to the left, without it Routh's theorem holds: g > 0 suffices."""
     (claim,) = mbsym.loads(CART).claims
     assert claim.outcome == Outcome.EXACT
+
+
+SPIN = """
+mbsym: 1
+name: free body that spins about an axis of inertia
+parameters: {A: positive, B: positive, C: positive, W: positive}
+bodies:
+  - {name: body, attached to: 0, rotation: {axes: AXES, angles: ANGLES}, mass: 1, inertia about: mass centre,
+     inertia: [A, B, C]}
+motion: {a: 0, b: 0, f: {rate: W}}
+claims:
+  - {claim: condition, that: (C - A)*(C - B) > 0, as: necessary}
+  - {claim: condition, that: (C - A)*(C - B) >= 0, as: necessary}
+  - {claim: condition, that: (C - A)*(C - B) > 0, as: sufficient}
+  - {claim: condition, that: C > A, as: necessary}
+"""
+
+
+@pytest.mark.parametrize(("axes", "angles"), [("[3, 1, 2]", "[f, a, b]"), ("[1, 2, 3]", "[a, b, f]")])
+def test_conditions_of_a_spin_are_tried_in_angles_in_which_it_is_steady(axes: str, angles: str) -> None:
+    """About the largest or smallest axis it is stable, about the middle one unstable; with C = A its axis drifts."""
+    found = mbsym.loads(SPIN.replace("AXES", axes).replace("ANGLES", angles), (6,)).claims
+    necessary, with_equality, sufficient, wrong = [str(x.outcome) for x in found]
+    assert (necessary, wrong) == ("holds but for border cases", "does not hold")
+    assert with_equality == sufficient == "holds exactly"
