@@ -222,6 +222,14 @@ def test_an_exponent_that_is_known_is_within_its_uncertainty() -> None:
     assert abs(found.values[0] - (-0.2 + np.sqrt(0.04 + 8)) / 2) <= found.uncertainty[0] < 0.01
 
 
+@pytest.mark.parametrize("time", [100, 200, 400])
+def test_zero_is_within_the_uncertainty_of_a_regular_motion(time: float) -> None:
+    """A pendulum's frequency hangs on its swing: neighbours part like t, and the exponent falls as log(t)/t to 0."""
+    found = exponents(dynamics(PENDULUM), time, 0.5)
+    assert found.falling
+    assert (abs(found.values) <= found.uncertainty).all()
+
+
 def test_the_largest_exponent_stands_first() -> None:
     """Over a short time the columns are not yet along what grows most: their own order is not that of the exponents."""
     found = exponents(Dynamics(scenario(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system)), 20, 1.0)

@@ -80,10 +80,7 @@ class Exponents:
 
         The mean over the second half is then much smaller than over the first.
         """
-        half = len(self.times) // 2
-        early = self.history[half - 1, 0]
-        late = 2 * self.history[-1, 0] - early
-        return bool(abs(late) < 0.5 * abs(early))
+        return bool(_falling(self.history)[0])
 
     @property
     def regular(self) -> float:
@@ -147,9 +144,16 @@ def exponents(
     divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
     error = abs(float(np.sum(values)) - divergence) if flow.columns == most else float("nan")
     doubt, linear = _uncertainty(rates, times, tolerance), dynamics.linear
+    doubt = np.where(_falling(history), np.maximum(doubt, abs(values)), doubt)  # what falls as log(t)/t may end at zero
     # What a constraint drives is a variable more, though the rates may hold no time.
     planar = most == 2 and autonomous(dynamics) and dynamics.is_scleronomic
     return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, planar, resting)
+
+
+def _falling(history: Any) -> Any:
+    """Of every exponent whether its mean over the second half is less than half of that over the first."""
+    early = history[len(history) // 2 - 1]
+    return abs(2 * history[-1] - early) < 0.5 * abs(early)
 
 
 def _directions(size: int, columns: int) -> Any:
