@@ -26,7 +26,6 @@ from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.model.constraints import Rolling
 from mbsym.model.speeds import Quaternion
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
@@ -35,7 +34,7 @@ from mbsym.problems.integrals import (
     ABOUT_CONTACT,
     ENERGY,
     Integral,
-    about_contact,
+    about_contacts,
     momentum_title,
     whole_momenta,
 )
@@ -181,13 +180,9 @@ def candidates(
         momenta_of_all = whole_momenta(scene)
         for kind, axis, formula in momenta_of_all:
             yield _integral(form, momentum_title(kind, axis), kind, str(axis), formula), ()
-        for rolling in (x for x in form.system.constraints if isinstance(x, Rolling)):
-            place = f"{rolling.body} {rolling.on}"
-            for axis, formula in about_contact(scene, rolling, momenta_of_all):
-                title = Message(
-                    "angular momentum about the contact of [[body]], axis [[axis]]", body=rolling.body, axis=axis
-                )
-                yield _integral(form, title, ABOUT_CONTACT, f"{place} {axis}", formula), ()
+        text = "angular momentum about the contact of [[body]], axis [[axis]]"
+        for of, body, axis, formula in about_contacts(scene, momenta_of_all):
+            yield _integral(form, Message(text, body=body, axis=axis), ABOUT_CONTACT, of, formula), ()
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()

@@ -461,16 +461,23 @@ def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
     return sorted(momenta, key=lambda item: order[item[0]])
 
 
-def about_contact(scene: Scene, rolling: Rolling, whole: Sequence[tuple[str, int, Any]]) -> Iterator[tuple[int, Any]]:
-    """(axis, component) of H - r x P along the inertial axes, r the contact; ``whole``: those of P and of H."""
+def about_contacts(scene: Scene, whole: Sequence[tuple[str, int, Any]]) -> Iterator[tuple[str, str, int, Any]]:
+    """(what the integral is of, body, axis, component) of H - r x P along the inertial axes, r where the body rolls.
+
+    ``whole``: the components of P and H.
+    """
     algebra, known = scene.algebra, {(kind, axis): x for kind, axis, x in whole}
-    place = scene.position(scene.zero(rolling.body), INERTIAL)
-    arm = place + scene.to_axes(scene.vector(rolling.contact, rolling.axes), INERTIAL)
-    for axis, second, third in ((3, 1, 2), (1, 2, 3), (2, 3, 1)):
-        carried = [
-            algebra.times(arm[i - 1], known["linear momentum", j]) for i, j in ((second, third), (third, second))
-        ]
-        yield axis, algebra.reduce(known["angular momentum", axis] - carried[0] + carried[1])
+    for rolling in scene.system.constraints:
+        if not isinstance(rolling, Rolling):
+            continue
+        place = scene.position(scene.zero(rolling.body), INERTIAL)
+        arm = place + scene.to_axes(scene.vector(rolling.contact, rolling.axes), INERTIAL)
+        for axis, second, third in ((3, 1, 2), (1, 2, 3), (2, 3, 1)):
+            turned, back = (
+                algebra.times(arm[i - 1], known["linear momentum", j]) for i, j in ((second, third), (third, second))
+            )
+            component = algebra.reduce(known["angular momentum", axis] - turned + back)
+            yield f"{rolling.body} {rolling.on} {axis}", rolling.body, axis, component
 
 
 def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bool:

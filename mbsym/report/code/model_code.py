@@ -38,6 +38,7 @@ from mbsym.problems.integrals import (
     WITH_FORCES,
     WITH_IMPULSE,
     Integral,
+    about_contacts,
     identifiers,
     whole_momenta,
 )
@@ -221,13 +222,15 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
                 carry = Carrier(analysis.ring, code.program, dict(code.environment))
                 lagrangian[key] = carry(item.formula.polynomial)
     for item, key in zip(integrals, keys, strict=True):
-        if item.kind in (ABOUT_CONTACT, AXIAL, WITH_FORCES, OF_A_PART, GYROSCOPIC, WITH_IMPULSE):
+        if item.kind in (AXIAL, WITH_FORCES, OF_A_PART, GYROSCOPIC, WITH_IMPULSE):
             carry = Carrier(analysis.ring, code.program, dict(code.environment))
             lagrangian[key] = carry(item.formula.polynomial)
     if all(key in lagrangian for key in keys):
         return Integrals(tuple(named), code.program, tuple(lagrangian[key] for key in keys))
     scene, program = _scene(analysis)
-    whole = {(kind, str(axis)): node for kind, axis, node in whole_momenta(scene)}
+    of_all = whole_momenta(scene)
+    whole = {(kind, str(axis)): node for kind, axis, node in of_all}
+    whole |= {(ABOUT_CONTACT, of): node for of, _, _, node in about_contacts(scene, of_all)}
     carried = code.program.evaluate(list(lagrangian.values()), scene.environment, program)
     whole |= dict(zip(lagrangian, carried, strict=True))
     return Integrals(tuple(named), program, tuple(whole[key] for key in keys))
