@@ -243,9 +243,19 @@ def _is_everywhere(stability: Stability) -> bool:
 
 
 def _telling(stability: Stability) -> list[tuple[int, SubsystemStability]]:
-    """The groups of coordinates with their numbers, but those of which less is known than of the whole."""
+    """The groups of coordinates with their numbers, but those of which nothing is known that the whole does not say.
+
+    Less may be known of a group than of the whole; and where all its roots are zero, nothing in it decays or grows.
+    """
     parts = enumerate(stability.subsystems, start=1)
-    return [(k, x) for k, x in parts if not (stability.verdict.word.stable and x.theory.verdict.word.open)]
+    less = stability.verdict.word.stable
+    return [(k, x) for k, x in parts if not (less and x.theory.verdict.word.open) and not _glides(x)]
+
+
+def _glides(part: SubsystemStability) -> bool:
+    """Whether a group has no motions but steady ones, at other rates."""
+    word, degree = part.theory.verdict.word, len(part.characteristic) - 1
+    return word is Word.ASYMPTOTIC_BUT_STEADY and degree == part.theory.zero_power
 
 
 def _at_values(stability: Stability, system: System) -> Inline:
