@@ -275,15 +275,16 @@ def _at_values(stability: Stability, system: System) -> Inline:
 def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
     """The verdicts for all values of the parameters: that on the whole, then those on subsystems, with their cases."""
     presumed = (*results.presumed[1:], ": ") if results.presumed else ()
-    if len(stability.subsystems) == 1:
-        first, *further = _part(stability.subsystems[0], 1, "verdict")
+    word, parts = stability.verdict.word, _telling(stability)
+    alone = [x for x in parts if len(stability.subsystems) == 1 or word is Word.DEPENDS]
+    if len(alone) == 1 and all(map(_glides, (x for x in stability.subsystems if x is not alone[0][1]))):
+        number, part = alone[0]
+        first, *further = _part(part, number, "verdict")
         yield Phrase((*presumed, first))
-        yield from _coefficients(stability.subsystems[0], further, results.variable)
+        yield from _coefficients(part, further, results.variable)
         yield from further
         yield from _what_would_decide(stability)
         return
-    word = stability.verdict.word
-    parts = _telling(stability)
     lines_by_part = [list(_part(part, k, "")) for k, part in parts]
     alike = all(part.theory.verdict.word is word for _, part in parts)
     together = alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in lines_by_part)
